@@ -1,0 +1,4 @@
+//! Conventions shared by every layer: directions, projections, colour. No scene, no GPU.
+
+pub mod color;
+pub mod spaces;

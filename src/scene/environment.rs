@@ -1,0 +1,92 @@
+//! Light from infinitely far away: the panorama and what is made of it for shading.
+
+use crate::math::spaces::equirect_from_direction;
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+/// An equirectangular panorama of radiance, linear Rec.709, cd/m2. Finite and not negative.
+///
+/// Row 0 looks up (+Y), the centre toward +X, not mirrored: see [`crate::math::spaces::equirect_from_direction`].
+#[derive(Debug, Clone)]
+pub struct EnvironmentImage {
+    pub width: u32,
+    pub height: u32,
+    /// `width * height` texels, row-major from the top left.
+    pub texels: Vec<Vec3>,
+}
+
+impl EnvironmentImage {
+    /// The same radiance from everywhere.
+    pub fn constant(radiance: Vec3) -> Self {
+        Self { width: 4, height: 2, texels: vec![radiance; 8] }
+    }
+
+    /// Radiance that arrives from `direction` (unit, in the panorama's own frame): bilinear between texel centres,
+    /// wrapping around the horizon, clamped at the poles.
+    pub fn radiance(&self, direction: DVec3) -> DVec3 {
+        let uv = equirect_from_direction(direction);
+        let x = uv.x * f64::from(self.width) - 0.5;
+        let y = (uv.y * f64::from(self.height) - 0.5).clamp(0.0, f64::from(self.height - 1));
+        let (x0, y0) = (x.floor(), y.floor());
+        let (fx, fy) = (x - x0, y - y0);
+        let column = |offset: i64| (x0 as i64 + offset).rem_euclid(i64::from(self.width)) as usize;
+        let row = |offset: u32| (y0 as u32 + offset).min(self.height - 1) as usize;
+        let texel = |column: usize, row: usize| self.texels[row * self.width as usize + column].as_dvec3();
+        let top = texel(column(0), row(0)).lerp(texel(column(1), row(0)), fx);
+        let bottom = texel(column(0), row(1)).lerp(texel(column(1), row(1)), fx);
+        top.lerp(bottom, fy)
+    }
+}
+
+/// A panorama as it stands around the scene.
+#[derive(Debug, Clone)]
+pub struct Environment {
+    pub image: Arc<EnvironmentImage>,
+    /// Turns the panorama about +Y: a positive angle moves what was seen toward +X toward -Z.
+    pub rotation_rad: f64,
+    /// Scale of all its radiance, 0 or above.
+    pub intensity: f64,
+}
+
+impl Environment {
+    pub fn new(image: EnvironmentImage) -> Self {
+        Self { image: Arc::new(image), rotation_rad: 0.0, intensity: 1.0 }
+    }
+
+    /// Radiance that arrives from the unit direction `direction_in_world`, cd/m2.
+    pub fn radiance(&self, direction_in_world: DVec3) -> DVec3 {
+        self.image.radiance(self.environment_from_world(direction_in_world)) * self.intensity
+    }
+
+    /// Turns a world direction into the panorama's own frame.
+    pub fn environment_from_world(&self, direction_in_world: DVec3) -> DVec3 {
+        glam::DQuat::from_rotation_y(-self.rotation_rad) * direction_in_world
+    }
+}
+
+/// Where one prefiltered level lies inside [`EnvironmentMaps::texels`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SpecularTile {
+    /// Texel of the tile's interior, counted from the top left of the atlas; the one-texel border lies outside it.
+    pub origin: [u32; 2],
+    /// Interior side, texels.
+    pub size: u32,
+}
+
+/// What shading reads of an environment, baked from its image, in the panorama's own frame.
+///
+/// Specular: one octahedral tile a level of perceptual roughness, all in one atlas, so that a level may have any size
+/// and one bilinear tap reads one level. A border of one texel around each tile repeats the octahedron's neighbours.
+#[derive(Debug, Clone)]
+pub struct EnvironmentMaps {
+    /// Irradiance / pi as spherical harmonics of degree 2, coefficients premultiplied with the basis constants and the
+    /// cosine lobe (Ramamoorthi and Hanrahan 2001): evaluated as
+    /// c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2).
+    pub irradiance_over_pi: [DVec3; 9],
+    /// Level k holds perceptual roughness k / (tiles.len() - 1).
+    pub tiles: Vec<SpecularTile>,
+    pub atlas_width: u32,
+    pub atlas_height: u32,
+    /// `atlas_width * atlas_height` texels of radiance, row-major.
+    pub texels: Vec<Vec3>,
+}

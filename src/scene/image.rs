@@ -1,0 +1,64 @@
+//! Decoded pictures and how they are sampled.
+
+use std::sync::Arc;
+
+/// RGBA pixels, row-major from the top left, four channels each.
+#[derive(Debug, Clone)]
+pub enum Pixels {
+    Rgba8(Arc<[u8]>),
+    Rgba16(Arc<[u16]>),
+}
+
+/// A decoded picture. The values are as stored in the file: whether they are sRGB depends on the slot that uses them.
+#[derive(Debug, Clone)]
+pub struct Image {
+    pub name: Option<String>,
+    pub width: u32,
+    pub height: u32,
+    pub pixels: Pixels,
+}
+
+/// What lies outside [0, 1] of a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Wrap {
+    #[default]
+    Repeat,
+    MirroredRepeat,
+    ClampToEdge,
+}
+
+/// Filtering and wrapping of a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Sampler {
+    pub wrap_u: Wrap,
+    pub wrap_v: Wrap,
+    /// Bilinear (true) or nearest texel when magnified.
+    pub mag_linear: bool,
+    /// Bilinear (true) or nearest texel when minified.
+    pub min_linear: bool,
+    /// How mip levels are combined: `None` uses only level 0, `Some(false)` the nearest level, `Some(true)` blends two.
+    pub mip_linear: Option<bool>,
+}
+
+impl Default for Sampler {
+    fn default() -> Self {
+        Self { wrap_u: Wrap::Repeat, wrap_v: Wrap::Repeat, mag_linear: true, min_linear: true, mip_linear: Some(true) }
+    }
+}
+
+/// An image with a sampler.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Texture {
+    /// Index into [`super::Scene::images`].
+    pub image: usize,
+    pub sampler: Sampler,
+}
+
+/// A rendered picture: scene radiance, before exposure and tone map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RadianceImage {
+    pub width: u32,
+    pub height: u32,
+    /// `width * height` texels from the top left: linear Rec.709 radiance in cd/m2, multiplied with the coverage in w.
+    pub texels: Vec<glam::Vec4>,
+}

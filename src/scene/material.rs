@@ -1,0 +1,168 @@
+//! Surface appearance: metallic-roughness parameters and the textures that modulate them.
+
+use glam::{Mat3, Vec2, Vec3, Vec4};
+
+/// How the alpha of the base colour is used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AlphaMode {
+    /// Alpha is ignored.
+    Opaque,
+    /// Below `cutoff` nothing is drawn, at or above it the surface is opaque.
+    Mask { cutoff: f32 },
+    /// Alpha is coverage; drawn back to front.
+    Blend,
+}
+
+/// Offset, rotation and scale of texture coordinates (KHR_texture_transform):
+/// uv' = translate(offset) * rotate(rotation_rad) * scale(scale) * uv.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UvTransform {
+    pub offset: Vec2,
+    /// Counter-clockwise in the extension's sense (v points down).
+    pub rotation_rad: f32,
+    pub scale: Vec2,
+}
+
+impl UvTransform {
+    pub const IDENTITY: Self = Self { offset: Vec2::ZERO, rotation_rad: 0.0, scale: Vec2::ONE };
+
+    /// The 3x3 matrix that takes (u, v, 1) to the transformed (u', v', 1).
+    pub fn matrix(&self) -> Mat3 {
+        let (sin, cos) = self.rotation_rad.sin_cos();
+        Mat3::from_cols(
+            Vec3::new(cos * self.scale.x, -sin * self.scale.x, 0.0),
+            Vec3::new(sin * self.scale.y, cos * self.scale.y, 0.0),
+            self.offset.extend(1.0),
+        )
+    }
+}
+
+/// A texture as a material uses it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`super::Scene::textures`].
+    pub texture: usize,
+    /// Index into [`super::Primitive::uvs`]; present in every primitive that has this material.
+    pub uv_set: u32,
+    pub transform: UvTransform,
+}
+
+/// The texture slots of a material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TextureSlot {
+    /// RGBA, sRGB.
+    BaseColor,
+    /// G: perceptual roughness, B: metallic. Linear.
+    MetallicRoughness,
+    /// Tangent-space normal, linear, 0.5 is zero.
+    Normal,
+    /// R, linear.
+    Occlusion,
+    /// RGB, sRGB.
+    Emissive,
+    /// A: specular weight, linear.
+    Specular,
+    /// RGB, sRGB.
+    SpecularColor,
+}
+
+impl TextureSlot {
+    pub const ALL: [Self; 7] = [
+        Self::BaseColor,
+        Self::MetallicRoughness,
+        Self::Normal,
+        Self::Occlusion,
+        Self::Emissive,
+        Self::Specular,
+        Self::SpecularColor,
+    ];
+
+    /// Whether the colour channels of this slot are stored in sRGB.
+    pub fn is_srgb(self) -> bool {
+        matches!(self, Self::BaseColor | Self::Emissive | Self::SpecularColor)
+    }
+
+    /// The name of the slot in shaders and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BaseColor => "base_color",
+            Self::MetallicRoughness => "metallic_roughness",
+            Self::Normal => "normal",
+            Self::Occlusion => "occlusion",
+            Self::Emissive => "emissive",
+            Self::Specular => "specular",
+            Self::SpecularColor => "specular_color",
+        }
+    }
+}
+
+/// Parameters of a glTF 2.0 metallic-roughness material with KHR_materials_{emissive_strength, ior, specular, unlit}.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    pub name: Option<String>,
+    /// Linear Rec.709 and alpha, each in [0, 1].
+    pub base_color: Vec4,
+    /// In [0, 1].
+    pub metallic: f32,
+    /// In [0, 1]; alpha of the NDF is its square.
+    pub perceptual_roughness: f32,
+    /// Scale of the x and y of the normal texture.
+    pub normal_scale: f32,
+    /// In [0, 1]; 0 ignores the occlusion texture.
+    pub occlusion_strength: f32,
+    /// Linear Rec.709, times the emissive strength; cd/m2.
+    pub emissive_nits: Vec3,
+    /// Index of refraction: 1 or above, or 0 for the fully reflecting interface of KHR_materials_ior.
+    pub ior: f32,
+    /// Weight of the dielectric specular lobe, in [0, 1].
+    pub specular: f32,
+    /// Tint of the dielectric F0, 0 or above.
+    pub specular_color: Vec3,
+    pub alpha_mode: AlphaMode,
+    pub double_sided: bool,
+    /// The base colour is the radiance; no light is evaluated.
+    pub unlit: bool,
+    textures: [Option<TextureRef>; TextureSlot::ALL.len()],
+}
+
+impl Material {
+    pub fn texture(&self, slot: TextureSlot) -> Option<&TextureRef> {
+        self.textures[slot as usize].as_ref()
+    }
+
+    pub fn set_texture(&mut self, slot: TextureSlot, texture: Option<TextureRef>) {
+        self.textures[slot as usize] = texture;
+    }
+
+    /// The slots that hold a texture.
+    pub fn textures(&self) -> impl Iterator<Item = (TextureSlot, &TextureRef)> {
+        TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.texture(slot)?)))
+    }
+
+    /// F0 of the dielectric interface to air before tint and weight: ((ior - 1) / (ior + 1))^2, in [0, 1].
+    pub fn dielectric_f0(&self) -> f32 {
+        ((self.ior - 1.0) / (self.ior + 1.0)).powi(2)
+    }
+}
+
+impl Default for Material {
+    /// The default material of glTF 2.0.
+    fn default() -> Self {
+        Self {
+            name: None,
+            base_color: Vec4::ONE,
+            metallic: 1.0,
+            perceptual_roughness: 1.0,
+            normal_scale: 1.0,
+            occlusion_strength: 1.0,
+            emissive_nits: Vec3::ZERO,
+            ior: 1.5,
+            specular: 1.0,
+            specular_color: Vec3::ONE,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: false,
+            unlit: false,
+            textures: [None; TextureSlot::ALL.len()],
+        }
+    }
+}

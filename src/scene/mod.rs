@@ -1,0 +1,147 @@
+//! What is to be drawn, as plain data that has been checked: no file, no GPU.
+//!
+//! Importers produce a [`Scene`]; the renderer and the CPU reference both take it together with a [`View`].
+//! World space is right-handed, +Y up, in metres. Every index held here is valid: importers check, readers index.
+
+mod camera;
+mod environment;
+mod image;
+mod light;
+mod material;
+mod mesh;
+mod view;
+
+pub use camera::{Camera, Projection};
+pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, SpecularTile};
+pub use image::{Image, Pixels, RadianceImage, Sampler, Texture, Wrap};
+pub use light::{Light, LightInWorld, LightKind};
+pub use material::{AlphaMode, Material, TextureRef, TextureSlot, UvTransform};
+pub use mesh::{Mesh, Primitive, Topology};
+pub use view::{Background, ToneMap, View};
+
+use glam::{DMat4, DVec3};
+
+/// A node of the scene graph: a local transform, children, and what hangs on it.
+#[derive(Debug, Clone, Default)]
+pub struct Node {
+    pub name: Option<String>,
+    pub parent_from_node: DMat4,
+    pub children: Vec<usize>,
+    pub mesh: Option<usize>,
+    pub camera: Option<usize>,
+    pub light: Option<usize>,
+}
+
+/// A scene: geometry, materials, textures, lights, cameras and the environment around them.
+#[derive(Debug, Clone, Default)]
+pub struct Scene {
+    pub name: Option<String>,
+    /// All nodes; each is the child of at most one other, and there is no cycle.
+    pub nodes: Vec<Node>,
+    /// Nodes without a parent that belong to this scene.
+    pub roots: Vec<usize>,
+    pub meshes: Vec<Mesh>,
+    pub materials: Vec<Material>,
+    pub textures: Vec<Texture>,
+    pub images: Vec<Image>,
+    pub cameras: Vec<Camera>,
+    pub lights: Vec<Light>,
+    /// Light from infinitely far away, and what is seen there; `None` is black.
+    pub environment: Option<Environment>,
+}
+
+/// A mesh placed in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instance {
+    pub node: usize,
+    pub mesh: usize,
+    pub world_from_object: DMat4,
+}
+
+/// An axis-aligned box; empty when `min > max`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    pub min: DVec3,
+    pub max: DVec3,
+}
+
+impl Bounds {
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmple(self.max).all()
+    }
+
+    pub fn grow(&mut self, point: DVec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    pub fn center(&self) -> DVec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    pub fn diagonal(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+    }
+
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            DVec3::new(
+                if i & 1 == 0 { self.min.x } else { self.max.x },
+                if i & 2 == 0 { self.min.y } else { self.max.y },
+                if i & 4 == 0 { self.min.z } else { self.max.z },
+            )
+        })
+    }
+}
+
+impl Scene {
+    /// `world_from_node` of every node reachable from the roots, parents before children; `(node, matrix)` pairs.
+    ///
+    /// Iterative, so that a chain of a hundred thousand nodes costs memory and not stack.
+    pub fn world_transforms(&self) -> Vec<(usize, DMat4)> {
+        let mut out = Vec::with_capacity(self.nodes.len());
+        let mut pending: Vec<(usize, DMat4)> = self.roots.iter().rev().map(|&root| (root, DMat4::IDENTITY)).collect();
+        while let Some((index, world_from_parent)) = pending.pop() {
+            let node = &self.nodes[index];
+            let world_from_node = world_from_parent * node.parent_from_node;
+            out.push((index, world_from_node));
+            pending.extend(node.children.iter().rev().map(|&child| (child, world_from_node)));
+        }
+        out
+    }
+
+    /// Every mesh instance of the scene, in depth-first order of the node tree.
+    pub fn instances(&self) -> Vec<Instance> {
+        let place = |(node, world_from_object): (usize, DMat4)| {
+            self.nodes[node].mesh.map(|mesh| Instance { node, mesh, world_from_object })
+        };
+        self.world_transforms().into_iter().filter_map(place).collect()
+    }
+
+    /// Every light of the scene with its place and direction in the world.
+    pub fn lights_in_world(&self) -> Vec<LightInWorld> {
+        let place = |(node, world_from_node): (usize, DMat4)| {
+            let light = self.nodes[node].light?;
+            Some(self.lights[light].in_world(&world_from_node))
+        };
+        self.world_transforms().into_iter().filter_map(place).collect()
+    }
+
+    /// Bounds of all placed vertices, in world space. Empty when nothing is placed.
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for instance in self.instances() {
+            for primitive in &self.meshes[instance.mesh].primitives {
+                for position in &primitive.positions {
+                    let point = instance.world_from_object.transform_point3(position.as_dvec3());
+                    if point.is_finite() {
+                        bounds.grow(point);
+                    }
+                }
+            }
+        }
+        bounds
+    }
+}
