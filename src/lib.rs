@@ -3,3 +3,4 @@
 pub mod math;
 pub mod progress;
 pub mod scene;
+pub mod shader;

@@ -122,16 +122,17 @@ pub struct Material {
     pub double_sided: bool,
     /// The base colour is the radiance; no light is evaluated.
     pub unlit: bool,
-    textures: [Option<TextureRef>; TextureSlot::ALL.len()],
+    /// Textures by slot; read them through [`Material::texture`].
+    pub texture_slots: [Option<TextureRef>; TextureSlot::ALL.len()],
 }
 
 impl Material {
     pub fn texture(&self, slot: TextureSlot) -> Option<&TextureRef> {
-        self.textures[slot as usize].as_ref()
+        self.texture_slots[slot as usize].as_ref()
     }
 
     pub fn set_texture(&mut self, slot: TextureSlot, texture: Option<TextureRef>) {
-        self.textures[slot as usize] = texture;
+        self.texture_slots[slot as usize] = texture;
     }
 
     /// The slots that hold a texture.
@@ -162,7 +163,7 @@ impl Default for Material {
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
-            textures: [None; TextureSlot::ALL.len()],
+            texture_slots: [None; TextureSlot::ALL.len()],
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 /// How the indices of a primitive group into shapes. Importers unroll strips, loops and fans into lists.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Topology {
     Points,
     Lines,

@@ -1,0 +1,11 @@
+@group(0) @binding(2) var dfg_table: texture_2d<f32>;
+@group(0) @binding(3) var clamp_sampler: sampler;
+
+const DFG_SIZE: f32 = 128.0;
+
+// Split-sum pair and its cosine average: (scale, bias, scale_avg, bias_avg). Texel centres lie on the end points of
+// sqrt(cosine) and perceptual roughness, which costs a sixteenth of the texels of the usual layout.
+fn dfg(perceptual_roughness: f32, cos_theta: f32) -> vec4f {
+    let uv = (vec2f(sqrt(cos_theta), perceptual_roughness) * (DFG_SIZE - 1.0) + 0.5) / DFG_SIZE;
+    return textureSampleLevel(dfg_table, clamp_sampler, uv, 0.0);
+}

@@ -1,0 +1,86 @@
+#import "math/constants.wgsl"
+#import "brdf/d_ggx.wgsl"
+#import "brdf/v_smith_ggx_correlated.wgsl"
+#import "brdf/f_schlick.wgsl"
+#import "brdf/fd_lambert.wgsl"
+#import "lobe/albedo.wgsl"
+#import <multiscatter>
+#import "lighting/dfg.wgsl"
+
+// Below this a punctual light's highlight is a few pixels of f32 noise, and D overflows half floats.
+const ALPHA_MIN: f32 = 1e-3;
+// Smallest loss that the 16-bit table can tell from zero.
+const LOSS_MIN: f32 = 1.5e-5;
+
+// Everything about a surface that does not depend on the light.
+struct Lobes {
+    n: vec3f,
+    NoV: f32,
+    v: vec3f,
+    alpha: f32,
+    // Schlick's curve of dielectric and metal, mixed. It is linear in F0 and F90, so mixing them is exact here.
+    F0: vec3f,
+    F90: f32,
+    // F0 scale + F90 bias at NoV: what the specular lobe returns of uniform light in one bounce.
+    single_scatter: vec3f,
+    perceptual_roughness: f32,
+    // F_ms (1 - E(NoV)), dielectric and metal computed apart and then mixed: F_ms is not linear in F0.
+    multiscatter: vec3f,
+    multiscatter_norm: f32,
+    // base_color (1 - metallic) (1 - E_s(NoV)).
+    diffuse: vec3f,
+    diffuse_norm: f32,
+    // The dielectric lobe that the diffuse light has to pass once more on the light's side.
+    coat_F0: f32,
+    coat_F90: f32,
+    coat_F_ms: f32,
+}
+
+fn make_lobes(surface: Surface) -> Lobes {
+    let r = surface.perceptual_roughness;
+    let NoV = clamp(dot(surface.n, surface.v), 1e-4, 1.0);
+    let table = dfg(r, NoV);
+    let E = table.x + table.y;
+    let E_avg = table.z + table.w;
+
+    let dielectric_F0 = min(surface.dielectric_F0 * surface.specular_color, vec3f(1.0)) * surface.specular;
+    let dielectric_F_ms = F_multiscatter(dielectric_F0, surface.specular, E_avg);
+    let metal_F_ms = F_multiscatter(surface.base_color, 1.0, E_avg);
+
+    var lobes: Lobes;
+    lobes.n = surface.n;
+    lobes.v = surface.v;
+    lobes.NoV = NoV;
+    lobes.perceptual_roughness = r;
+    lobes.alpha = max(r * r, ALPHA_MIN);
+    lobes.F0 = mix(dielectric_F0, surface.base_color, surface.metallic);
+    lobes.F90 = mix(surface.specular, 1.0, surface.metallic);
+    lobes.single_scatter = lobes.F0 * table.x + lobes.F90 * table.y;
+    lobes.multiscatter = mix(dielectric_F_ms, metal_F_ms, surface.metallic) * max(1.0 - E, 0.0);
+    lobes.multiscatter_norm = INV_PI / max(1.0 - E_avg, LOSS_MIN);
+
+    lobes.coat_F0 = max(dielectric_F0.x, max(dielectric_F0.y, dielectric_F0.z));
+    lobes.coat_F90 = surface.specular;
+    lobes.coat_F_ms = max(dielectric_F_ms.x, max(dielectric_F_ms.y, dielectric_F_ms.z));
+    let E_s = E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, table.x, table.y);
+    let E_s_avg = E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, table.z, table.w);
+    lobes.diffuse = surface.base_color * ((1.0 - surface.metallic) * (1.0 - E_s));
+    lobes.diffuse_norm = Fd_Lambert() / max(1.0 - E_s_avg, LOSS_MIN);
+    return lobes;
+}
+
+// BRDF times the cosine of the light, 1/sr. `l` is a unit vector toward the light; zero when it is below the horizon.
+fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
+    let NoL = saturate(dot(lobes.n, l));
+    let half_vector = l + lobes.v;
+    let h = half_vector * inverseSqrt(max(dot(half_vector, half_vector), 1e-12));
+    let VoH = saturate(dot(lobes.v, h));
+    let F = F_Schlick(lobes.F0, lobes.F90, VoH);
+    let DV = D_GGX(lobes.alpha, lobes.n, h) * V_SmithGGXCorrelated(lobes.alpha, lobes.NoV, NoL);
+
+    let table = dfg(lobes.perceptual_roughness, NoL);
+    let loss = max(1.0 - table.x - table.y, 0.0);
+    let passed = 1.0 - E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, table.x, table.y);
+    let smooth_part = lobes.multiscatter * (lobes.multiscatter_norm * loss) + lobes.diffuse * (lobes.diffuse_norm * passed);
+    return (F * DV + smooth_part) * NoL;
+}

@@ -1,0 +1,19 @@
+#import "light/attenuation.wgsl"
+#import "math/vectors.wgsl"
+
+@group(0) @binding(4) var<storage, read> lights: array<Light>;
+
+// Radiance toward the viewer from all point, spot and directional lights, unshadowed.
+fn punctual_radiance(lobes: Lobes, position: vec3f) -> vec3f {
+    var radiance = vec3f(0.0);
+    for (var i = 0u; i < frame.light_count; i++) {
+        let light = lights[i];
+        // A directional light is at w = 0: its position is the direction toward it.
+        let toward = light.position - position * light.w;
+        let l = normalize_or(toward, lobes.n);
+        let falloff = select(1.0, distance_attenuation(light.inverse_range_squared, dot(toward, toward)), light.w > 0.0);
+        let cone = spot_attenuation(light.spot_scale, light.spot_offset, -dot(light.direction, l));
+        radiance += evaluate_lobes(lobes, l) * light.intensity * (falloff * cone);
+    }
+    return radiance;
+}

@@ -1,0 +1,3 @@
+fn face_viewer(n: vec3f, front_facing: bool) -> vec3f {
+    return n;
+}

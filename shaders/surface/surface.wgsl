@@ -1,0 +1,38 @@
+#import <normal>
+#import <facing>
+
+// What a material says about one point: all that shading needs beside the lights.
+struct Surface {
+    // Unit shading normal on the viewer's side, and unit vector toward the viewer.
+    n: vec3f,
+    v: vec3f,
+    base_color: vec3f,
+    alpha: f32,
+    metallic: f32,
+    perceptual_roughness: f32,
+    dielectric_F0: f32,
+    specular: f32,
+    specular_color: vec3f,
+    occlusion: f32,
+    // cd/m2.
+    emissive: vec3f,
+}
+
+fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surface {
+    let base_color = material.base_color * base_color_texel(v) * vertex_color(v);
+    let metallic_roughness = metallic_roughness_texel(v);
+
+    var surface: Surface;
+    surface.n = face_viewer(shading_normal(v, toward_viewer), front_facing);
+    surface.v = toward_viewer;
+    surface.base_color = base_color.xyz;
+    surface.alpha = base_color.w;
+    surface.metallic = saturate(material.metallic * metallic_roughness.z);
+    surface.perceptual_roughness = saturate(material.perceptual_roughness * metallic_roughness.y);
+    surface.dielectric_F0 = material.dielectric_F0;
+    surface.specular = material.specular * specular_texel(v).w;
+    surface.specular_color = material.specular_color * specular_color_texel(v).xyz;
+    surface.occlusion = 1.0 + material.occlusion_strength * (occlusion_texel(v).x - 1.0);
+    surface.emissive = material.emissive * emissive_texel(v).xyz;
+    return surface;
+}

@@ -1,0 +1,175 @@
+//! `#import` with once-semantics, slots, and errors that name the original file and line.
+
+use super::sources::source;
+use std::collections::{BTreeMap, HashSet};
+
+/// What fills a slot: a file under `shaders/`, or generated text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Slot {
+    File(&'static str),
+    Text(String),
+}
+
+/// The slots of one module, by name.
+pub type Slots = BTreeMap<&'static str, Slot>;
+
+/// WGSL ready for the compiler, with the origin of each of its lines.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Composed {
+    pub text: String,
+    /// For each line of `text`: the file (or `<slot>`) and the line number there, from 1.
+    origins: Vec<(String, usize)>,
+}
+
+/// Why a module could not be made. A fault of this crate, not of its input.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ShaderError {
+    #[error("{file}:{line}: imports {target}, which does not exist")]
+    UnknownImport { file: String, line: usize, target: String },
+    #[error("{file}:{line}: imports {target}, which imports it in turn")]
+    CyclicImport { file: String, line: usize, target: String },
+    #[error("{file}:{line}: cannot read `{text}` as an import")]
+    BadImport { file: String, line: usize, text: String },
+    #[error("{file}:{line}: {message}")]
+    Wgsl { file: String, line: usize, message: String },
+}
+
+/// Resolves all imports of the file `root`. Every file and slot appears once, before its first importer.
+pub fn compose(root: &'static str, slots: &Slots) -> Result<Composed, ShaderError> {
+    let mut composer =
+        Composer { slots, done: HashSet::new(), open: Vec::new(), text: String::new(), origins: Vec::new() };
+    let text = source(root).ok_or_else(|| ShaderError::UnknownImport {
+        file: "(root)".into(),
+        line: 0,
+        target: root.into(),
+    })?;
+    composer.append(root, text)?;
+    Ok(Composed { text: composer.text, origins: composer.origins })
+}
+
+struct Composer<'a> {
+    slots: &'a Slots,
+    done: HashSet<String>,
+    open: Vec<String>,
+    text: String,
+    origins: Vec<(String, usize)>,
+}
+
+impl Composer<'_> {
+    fn append(&mut self, name: &str, text: &str) -> Result<(), ShaderError> {
+        self.open.push(name.to_owned());
+        // Imports may stand anywhere, so they are resolved before the file's own lines are written.
+        for (index, line) in text.lines().enumerate() {
+            if line.trim_start().starts_with("#import") {
+                self.import(name, index + 1, line)?;
+            }
+        }
+        for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("#import")) {
+            self.text.push_str(line);
+            self.text.push('\n');
+            self.origins.push((name.to_owned(), index + 1));
+        }
+        self.open.pop();
+        self.done.insert(name.to_owned());
+        Ok(())
+    }
+
+    fn import(&mut self, file: &str, line: usize, directive: &str) -> Result<(), ShaderError> {
+        let argument = directive.trim_start().trim_start_matches("#import").trim();
+        let (name, text) = self.resolve(argument, file, line)?;
+        if self.open.contains(&name) {
+            return Err(ShaderError::CyclicImport { file: file.into(), line, target: name });
+        }
+        if self.done.contains(&name) { Ok(()) } else { self.append(&name, &text) }
+    }
+
+    /// The name and the text behind `"path"` or `<slot>`.
+    fn resolve(&self, argument: &str, file: &str, line: usize) -> Result<(String, String), ShaderError> {
+        let unknown = |target: &str| ShaderError::UnknownImport { file: file.into(), line, target: target.into() };
+        if let Some(path) = argument.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
+            let text = source(path).ok_or_else(|| unknown(path))?;
+            return Ok((path.to_owned(), text.to_owned()));
+        }
+        if let Some(slot) = argument.strip_prefix('<').and_then(|rest| rest.strip_suffix('>')) {
+            return match self.slots.get(slot).ok_or_else(|| unknown(argument))? {
+                Slot::File(path) => Ok(((*path).to_owned(), source(path).ok_or_else(|| unknown(path))?.to_owned())),
+                Slot::Text(text) => Ok((argument.to_owned(), text.clone())),
+            };
+        }
+        Err(ShaderError::BadImport { file: file.into(), line, text: argument.into() })
+    }
+}
+
+impl Composed {
+    /// WGSL composed elsewhere, for tests that edit a module after composition.
+    pub fn with_text(&self, text: String) -> Self {
+        Self { text, origins: self.origins.clone() }
+    }
+
+    /// Parses the text; an error names the file and line that it came from.
+    pub fn parse(&self) -> Result<naga::Module, ShaderError> {
+        naga::front::wgsl::parse_str(&self.text).map_err(|error| {
+            let at = error.location(&self.text).map_or(0, |location| location.line_number as usize);
+            let (file, line) = at
+                .checked_sub(1)
+                .and_then(|index| self.origins.get(index))
+                .cloned()
+                .unwrap_or_else(|| ("(composed)".into(), at));
+            let message = error.emit_to_string(&self.text);
+            ShaderError::Wgsl { file, line, message: message.lines().next().unwrap_or_default().to_owned() }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text_slots(slots: &[(&'static str, &str)]) -> Slots {
+        slots.iter().map(|(name, text)| (*name, Slot::Text((*text).to_owned()))).collect()
+    }
+
+    #[test]
+    fn a_file_is_imported_once_and_before_its_importer() {
+        let slots = text_slots(&[("tone_map", "fn tone_map(x: vec3f) -> vec3f { return x; }"), ("types", "")]);
+        let slots: Slots = slots.into_iter().chain([("encode", Slot::File("color/encode_srgb.wgsl"))]).collect();
+        let composed = compose("color/encode_srgb.wgsl", &slots).unwrap();
+        assert_eq!(composed.text.matches("fn srgb_from_linear").count(), 1);
+        assert!(composed.text.find("fn srgb_from_linear") < composed.text.find("fn encode"));
+    }
+
+    #[test]
+    fn unknown_and_malformed_imports_are_errors_with_their_line() {
+        let slots = text_slots(&[("material", "\n#import \"no/such.wgsl\"")]);
+        let composer = |text: &str| {
+            let mut composer = Composer {
+                slots: &slots,
+                done: HashSet::new(),
+                open: Vec::new(),
+                text: String::new(),
+                origins: Vec::new(),
+            };
+            composer.append("here.wgsl", text).unwrap_err().to_string()
+        };
+        assert_eq!(composer("#import <material>"), "<material>:2: imports no/such.wgsl, which does not exist");
+        assert_eq!(composer("\n\n#import <nothing>"), "here.wgsl:3: imports <nothing>, which does not exist");
+        assert_eq!(composer("#import bare"), "here.wgsl:1: cannot read `bare` as an import");
+    }
+
+    #[test]
+    fn a_cycle_is_an_error() {
+        let slots = text_slots(&[("a", "#import <b>"), ("b", "#import <a>")]);
+        let mut composer =
+            Composer { slots: &slots, done: HashSet::new(), open: Vec::new(), text: String::new(), origins: vec![] };
+        let error = composer.append("root.wgsl", "#import <a>").unwrap_err();
+        assert!(matches!(error, ShaderError::CyclicImport { .. }), "{error}");
+    }
+
+    #[test]
+    fn an_error_in_wgsl_names_the_original_line() {
+        let slots = text_slots(&[("types", "struct A { x: f32 }\nfn broken() -> f32 { return nonsense; }")]);
+        let composed = compose("pass/background.wgsl", &slots).unwrap();
+        let error = composed.parse().unwrap_err().to_string();
+        assert!(error.starts_with("<types>:2: "), "{error}");
+    }
+}

@@ -1,0 +1,213 @@
+//! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
+
+use crate::scene::{AlphaMode, Material, Primitive, Sampler, Scene, TextureSlot, Topology, UvTransform};
+use std::fmt;
+
+/// How one texture slot is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TextureUse {
+    pub uv_set: u8,
+    /// Index into the material's distinct samplers.
+    pub sampler: u8,
+    /// Whether the coordinates are transformed at all.
+    pub transformed: bool,
+}
+
+/// What becomes of the base colour's alpha.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Alpha {
+    Opaque,
+    Mask,
+    Blend,
+}
+
+/// Where the light comes from, for a whole scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SceneFeatures {
+    pub punctual: bool,
+    pub environment: bool,
+}
+
+impl SceneFeatures {
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            punctual: scene.lights_in_world().iter().any(|light| light.intensity != glam::DVec3::ZERO),
+            environment: scene.environment.as_ref().is_some_and(|environment| environment.intensity > 0.0),
+        }
+    }
+
+    /// Whether any light falls on surfaces.
+    pub fn is_lit(self) -> bool {
+        self.punctual || self.environment
+    }
+}
+
+/// How the surface answers light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Shading {
+    Lit,
+    /// The scene has no light: only emission shows.
+    EmissiveOnly,
+    Unlit,
+}
+
+/// What the pixels of a draw read and do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialFeatures {
+    pub shading: Shading,
+    pub alpha: Alpha,
+    pub double_sided: bool,
+    textures: [Option<TextureUse>; TextureSlot::ALL.len()],
+}
+
+impl MaterialFeatures {
+    /// Only what can change a pixel: an unlit material reads no normal map, an opaque one in the dark no base colour.
+    pub fn of(material: &Material, primitive: &Primitive, scene: &Scene, lit_scene: bool) -> Self {
+        let shading = if material.unlit || primitive.normals.is_none() {
+            Shading::Unlit
+        } else if lit_scene {
+            Shading::Lit
+        } else {
+            Shading::EmissiveOnly
+        };
+        let alpha = match material.alpha_mode {
+            AlphaMode::Opaque => Alpha::Opaque,
+            AlphaMode::Mask { .. } => Alpha::Mask,
+            AlphaMode::Blend => Alpha::Blend,
+        };
+        let samplers = material_samplers(material, scene);
+        let mut features = Self { shading, alpha, double_sided: material.double_sided, textures: [None; _] };
+        for (slot, texture) in material.textures() {
+            if !features.reads(slot, material, primitive) {
+                continue;
+            }
+            let sampler = scene.textures[texture.texture].sampler;
+            features.textures[slot as usize] = Some(TextureUse {
+                uv_set: texture.uv_set as u8,
+                sampler: samplers.iter().position(|&other| other == sampler).unwrap_or(0) as u8,
+                transformed: texture.transform != UvTransform::IDENTITY,
+            });
+        }
+        features
+    }
+
+    fn reads(&self, slot: TextureSlot, material: &Material, primitive: &Primitive) -> bool {
+        let lit = self.shading == Shading::Lit;
+        match slot {
+            TextureSlot::BaseColor => self.shading != Shading::EmissiveOnly || self.alpha != Alpha::Opaque,
+            TextureSlot::Emissive => self.shading != Shading::Unlit && material.emissive_nits != glam::Vec3::ZERO,
+            TextureSlot::Normal => lit && primitive.tangents.is_some(),
+            TextureSlot::Occlusion => lit && material.occlusion_strength > 0.0,
+            TextureSlot::MetallicRoughness => lit,
+            TextureSlot::Specular => lit && material.specular > 0.0 && material.metallic < 1.0,
+            TextureSlot::SpecularColor => lit && material.specular > 0.0 && material.metallic < 1.0,
+        }
+    }
+
+    pub fn texture(&self, slot: TextureSlot) -> Option<TextureUse> {
+        self.textures[slot as usize]
+    }
+
+    /// The texture slots that are sampled.
+    pub fn textures(&self) -> impl Iterator<Item = (TextureSlot, TextureUse)> {
+        TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.texture(slot)?)))
+    }
+
+    /// How many of the material's samplers are bound: up to the highest in use.
+    pub fn sampler_count(&self) -> u32 {
+        self.textures().map(|(_, texture)| u32::from(texture.sampler) + 1).max().unwrap_or(0)
+    }
+}
+
+/// The distinct samplers among the textures of a material, in slot order.
+pub fn material_samplers(material: &Material, scene: &Scene) -> Vec<Sampler> {
+    let mut samplers = Vec::new();
+    for (_, texture) in material.textures() {
+        let sampler = scene.textures[texture.texture].sampler;
+        if !samplers.contains(&sampler) {
+            samplers.push(sampler);
+        }
+    }
+    samplers
+}
+
+/// The vertex attributes that a draw reads beside the position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct VertexFeatures {
+    pub normal: bool,
+    pub tangent: bool,
+    pub color: bool,
+    /// One bit a texture coordinate set.
+    pub uv_sets: u8,
+}
+
+impl VertexFeatures {
+    pub fn of(material: &MaterialFeatures, primitive: &Primitive) -> Self {
+        let lit = material.shading == Shading::Lit;
+        let reads_color = material.shading != Shading::EmissiveOnly || material.alpha != Alpha::Opaque;
+        Self {
+            normal: lit,
+            tangent: material.texture(TextureSlot::Normal).is_some(),
+            color: reads_color && primitive.colors.is_some(),
+            uv_sets: material.textures().fold(0, |sets, (_, texture)| sets | 1 << texture.uv_set),
+        }
+    }
+
+    pub fn uv_sets(&self) -> impl Iterator<Item = u32> + use<> {
+        let sets = self.uv_sets;
+        (0..8).filter(move |set| sets >> set & 1 == 1)
+    }
+}
+
+/// Everything that chooses the forward shader of a draw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ForwardFeatures {
+    pub scene: SceneFeatures,
+    pub material: MaterialFeatures,
+    pub vertex: VertexFeatures,
+    pub energy_compensation: bool,
+    pub topology: Topology,
+}
+
+impl ForwardFeatures {
+    /// Topology changes no code, so modules are shared across it.
+    pub fn module_key(mut self) -> Self {
+        self.topology = Topology::Triangles;
+        self
+    }
+}
+
+impl fmt::Display for ForwardFeatures {
+    /// A name such as `lit+environment+base_color+normal+mask`, for labels, reports and dumped files.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut parts = vec![match self.material.shading {
+            Shading::Lit => "lit",
+            Shading::EmissiveOnly => "dark",
+            Shading::Unlit => "unlit",
+        }];
+        let lit = self.material.shading == Shading::Lit;
+        let flags = [
+            (lit && self.scene.punctual, "punctual"),
+            (lit && self.scene.environment, "environment"),
+            (lit && !self.energy_compensation, "single_scatter"),
+            (self.vertex.color, "vertex_color"),
+            (self.material.alpha == Alpha::Mask, "mask"),
+            (self.material.alpha == Alpha::Blend, "blend"),
+            (self.material.double_sided, "double_sided"),
+        ];
+        parts.extend(flags.into_iter().filter(|(on, _)| *on).map(|(_, name)| name));
+        f.write_str(&parts.join("+"))?;
+        for (slot, texture) in self.material.textures() {
+            write!(f, "+{}", slot.name())?;
+            if texture.uv_set > 0 || texture.sampler > 0 || texture.transformed {
+                let transformed = if texture.transformed { "t" } else { "" };
+                write!(f, ".{}{}{transformed}", texture.uv_set, texture.sampler)?;
+            }
+        }
+        match self.topology {
+            Topology::Triangles => Ok(()),
+            Topology::Lines => f.write_str("+lines"),
+            Topology::Points => f.write_str("+points"),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! WGSL that is written from features: vertex attributes, interpolants, and the texture reads of a material.
+
+use super::features::{MaterialFeatures, VertexFeatures};
+use crate::scene::TextureSlot;
+use std::fmt::Write;
+
+/// Binding of the material's uniform in its group.
+pub const MATERIAL_UNIFORM_BINDING: u32 = 0;
+/// First binding of the material's samplers; the textures follow the last of them.
+pub const MATERIAL_SAMPLER_BINDING: u32 = 1;
+
+/// Binding of the texture that is the `index`th in use, when `sampler_count` samplers are bound.
+pub fn material_texture_binding(sampler_count: u32, index: usize) -> u32 {
+    MATERIAL_SAMPLER_BINDING + sampler_count + index as u32
+}
+
+/// One vertex attribute: its name and WGSL type. Its position in the list is its shader location.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Attribute {
+    pub name: String,
+    pub wgsl: &'static str,
+}
+
+/// The attributes of a draw, position first, in the order of their locations and vertex buffers.
+pub fn attributes(vertex: &VertexFeatures) -> Vec<Attribute> {
+    let mut attributes = vec![Attribute { name: "position".into(), wgsl: "vec3f" }];
+    let optional =
+        [(vertex.normal, "normal", "vec3f"), (vertex.tangent, "tangent", "vec4f"), (vertex.color, "color", "vec4f")];
+    let present = optional.into_iter().filter(|(on, ..)| *on);
+    attributes.extend(present.map(|(_, name, wgsl)| Attribute { name: name.into(), wgsl }));
+    attributes.extend(vertex.uv_sets().map(|set| Attribute { name: format!("uv_{set}"), wgsl: "vec2f" }));
+    attributes
+}
+
+/// The `<interface>` slot: `VertexIn`, `VertexOut`, `vertex_out` and `vertex_color`.
+pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
+    let attributes = attributes(vertex);
+    let fields = |first: &str| {
+        let numbered = attributes.iter().enumerate();
+        numbered.fold(String::new(), |mut text, (location, attribute)| {
+            let name = if location == 0 { first } else { &attribute.name };
+            let _ = writeln!(text, "    @location({location}) {name}: {},", attribute.wgsl);
+            text
+        })
+    };
+    let mut text = format!(
+        "struct VertexIn {{\n    @builtin(instance_index) instance: u32,\n{}}}\n\n\
+         struct VertexOut {{\n    @builtin(position) @invariant position_in_clip: vec4f,\n{}}}\n\n",
+        fields("position"),
+        fields("position_in_world")
+    );
+    text.push_str(
+        "fn vertex_out(in: VertexIn) -> VertexOut {\n\
+         \x20   let instance = instances[in.instance];\n\
+         \x20   var out: VertexOut;\n\
+         \x20   out.position_in_world = vec4f(in.position, 1.0) * instance.world_from_object;\n\
+         \x20   out.position_in_clip = frame.clip_from_world * vec4f(out.position_in_world, 1.0);\n",
+    );
+    for Attribute { name, .. } in attributes.iter().skip(1) {
+        let value = match name.as_str() {
+            "normal" => "normalize_or(instance.normal_from_object * in.normal, vec3f(0.0))".to_owned(),
+            "tangent" => "vec4f(normalize_or(vec4f(in.tangent.xyz, 0.0) * instance.world_from_object, vec3f(0.0)), \
+                 in.tangent.w * instance.handedness)"
+                .to_owned(),
+            name => format!("in.{name}"),
+        };
+        let _ = writeln!(text, "    out.{name} = {value};");
+    }
+    text.push_str("    return out;\n}\n\n");
+    let color = if vertex.color { "v.color" } else { "vec4f(1.0)" };
+    let _ = writeln!(text, "fn vertex_color(v: VertexOut) -> vec4f {{\n    return {color};\n}}");
+    text
+}
+
+/// The `<material>` slot: the uniform, and for every texture slot a function `NAME_texel` that is 1 without a texture.
+pub(super) fn material_interface(material: &MaterialFeatures) -> String {
+    let samplers = material.sampler_count();
+    let mut text = format!("@group(1) @binding({MATERIAL_UNIFORM_BINDING}) var<uniform> material: MaterialUniform;\n");
+    for sampler in 0..samplers {
+        let binding = MATERIAL_SAMPLER_BINDING + sampler;
+        let _ = writeln!(text, "@group(1) @binding({binding}) var material_sampler_{sampler}: sampler;");
+    }
+    for (index, (slot, _)) in material.textures().enumerate() {
+        let binding = material_texture_binding(samplers, index);
+        let _ = writeln!(text, "@group(1) @binding({binding}) var {}_texture: texture_2d<f32>;", slot.name());
+    }
+    for slot in TextureSlot::ALL {
+        let name = slot.name();
+        let value = match material.texture(slot) {
+            None => "vec4f(1.0)".to_owned(),
+            Some(texture) => {
+                let uv = format!("v.uv_{}", texture.uv_set);
+                let row = 2 * slot as usize;
+                let uv = if texture.transformed {
+                    let dot = |row: usize| format!("dot(material.uv_transforms[{row}].xyz, vec3f({uv}, 1.0))");
+                    format!("vec2f({}, {})", dot(row), dot(row + 1))
+                } else {
+                    uv
+                };
+                format!("textureSample({name}_texture, material_sampler_{}, {uv})", texture.sampler)
+            }
+        };
+        let _ = writeln!(text, "\nfn {name}_texel(v: VertexOut) -> vec4f {{\n    return {value};\n}}");
+    }
+    text
+}

@@ -1,0 +1,36 @@
+//! WGSL put together from the files in `shaders/`: only what a draw needs, one concern a file.
+//!
+//! A file names others with `#import "brdf/d_ggx.wgsl"`, or a *slot* with `#import <punctual>`: what fills the slot
+//! is chosen from [`ForwardFeatures`] and friends, so that a scene without a feature has neither its code nor its
+//! bindings. Slots are filled with a file or with text generated here from Rust declarations.
+
+mod compose;
+mod features;
+mod interface;
+mod layout;
+mod modules;
+mod sources;
+pub mod types;
+
+pub use compose::{Composed, ShaderError, Slot, Slots, compose};
+pub use features::{
+    Alpha, ForwardFeatures, MaterialFeatures, SceneFeatures, Shading, TextureUse, VertexFeatures, material_samplers,
+};
+pub use interface::{
+    Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, material_texture_binding,
+};
+pub use modules::{DisplayFeatures, background_module, display_module, forward_module};
+pub use sources::SOURCES;
+
+/// Makes a wgpu module of composed WGSL, with errors at the original file and line.
+pub fn create_module(
+    device: &wgpu::Device,
+    label: &str,
+    composed: &Composed,
+) -> Result<wgpu::ShaderModule, ShaderError> {
+    let module = composed.parse()?;
+    Ok(device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)),
+    }))
+}

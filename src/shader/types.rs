@@ -1,0 +1,151 @@
+//! Every struct that crosses to the GPU.
+//!
+//! Positions are relative to the scene's origin (its centre), so that a model far from the world's origin keeps its
+//! precision in f32.
+#![expect(non_snake_case, reason = "equation symbols keep their case in both languages")]
+
+use super::layout::gpu_struct;
+
+gpu_struct! {
+    /// What one view needs in every draw.
+    pub struct FrameUniform {
+        clip_from_world: mat4x4f,
+        /// Perspective: camera position and 1. Orthographic: unit vector toward the viewer and 0.
+        viewer: vec4f,
+        light_count: u32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
+    }
+}
+
+gpu_struct! {
+    /// One placed mesh.
+    pub struct Instance {
+        /// Rows of the affine transform: position_in_world = vec4f(position, 1) * world_from_object.
+        world_from_object: mat3x4f,
+        /// Inverse transpose up to a positive factor, from cofactors: turns normals right under any scale.
+        normal_from_object: mat3x3f,
+        /// -1 where the transform mirrors, else 1: the sign of the bitangent turns with it.
+        handedness: f32,
+        pad_0: f32,
+        pad_1: f32,
+        pad_2: f32,
+    }
+}
+
+gpu_struct! {
+    /// A point, spot or directional light.
+    pub struct Light {
+        /// Position and w = 1, or for a directional light the unit vector toward it and w = 0.
+        position: vec3f,
+        w: f32,
+        /// cd, or lux for a directional light.
+        intensity: vec3f,
+        /// 1/m^2; 0 without a range.
+        inverse_range_squared: f32,
+        /// Unit vector along the light's axis, away from it.
+        direction: vec3f,
+        spot_scale: f32,
+        spot_offset: f32,
+        pad_0: f32,
+        pad_1: f32,
+        pad_2: f32,
+    }
+}
+
+gpu_struct! {
+    /// The environment as shading reads it.
+    pub struct EnvironmentUniform {
+        /// Premultiplied coefficients, see `scene::EnvironmentMaps`, times the intensity.
+        irradiance_over_pi: [vec4f; 9],
+        /// Origin and size of each level's tile in the atlas, as texture coordinates.
+        tiles: [vec4f; 9],
+        environment_from_world: mat3x3f,
+        /// Intensity, and the scale that brought the radiance into half-float range.
+        radiance_scale: f32,
+        /// Levels - 1.
+        level_scale: f32,
+        pad_0: f32,
+        pad_1: f32,
+    }
+}
+
+gpu_struct! {
+    /// Factors of a material; textures multiply them.
+    pub struct MaterialUniform {
+        base_color: vec4f,
+        emissive: vec3f,
+        metallic: f32,
+        specular_color: vec3f,
+        specular: f32,
+        perceptual_roughness: f32,
+        dielectric_F0: f32,
+        normal_scale: f32,
+        occlusion_strength: f32,
+        alpha_cutoff: f32,
+        pad_0: f32,
+        pad_1: f32,
+        pad_2: f32,
+        /// Two rows a texture slot: uv' = (dot(row_0.xyz, (u, v, 1)), dot(row_1.xyz, (u, v, 1))).
+        uv_transforms: [vec4f; 14],
+    }
+}
+
+gpu_struct! {
+    /// The panorama behind the scene.
+    pub struct BackgroundUniform {
+        /// Direction in the panorama's frame from (ndc.x, ndc.y, 1); not normalised.
+        direction_from_ndc: mat3x3f,
+        radiance_scale: f32,
+        pad_0: f32,
+        pad_1: f32,
+        pad_2: f32,
+    }
+}
+
+gpu_struct! {
+    /// From scene radiance to the display.
+    pub struct DisplayUniform {
+        /// Linear display light, and 1 when it fills what is not covered, 0 when coverage goes to alpha.
+        background: vec4f,
+        exposure: f32,
+        pad_0: f32,
+        pad_1: f32,
+        pad_2: f32,
+    }
+}
+
+/// Every struct's name, WGSL declaration, field offsets and size.
+pub const ALL: &[(&str, &str, &[(&str, usize)], usize)] = &[
+    ("FrameUniform", FrameUniform::WGSL, FrameUniform::FIELDS, size_of::<FrameUniform>()),
+    ("Instance", Instance::WGSL, Instance::FIELDS, size_of::<Instance>()),
+    ("Light", Light::WGSL, Light::FIELDS, size_of::<Light>()),
+    ("EnvironmentUniform", EnvironmentUniform::WGSL, EnvironmentUniform::FIELDS, size_of::<EnvironmentUniform>()),
+    ("MaterialUniform", MaterialUniform::WGSL, MaterialUniform::FIELDS, size_of::<MaterialUniform>()),
+    ("BackgroundUniform", BackgroundUniform::WGSL, BackgroundUniform::FIELDS, size_of::<BackgroundUniform>()),
+    ("DisplayUniform", DisplayUniform::WGSL, DisplayUniform::FIELDS, size_of::<DisplayUniform>()),
+];
+
+/// All of them as WGSL: the `<types>` slot.
+pub fn wgsl() -> String {
+    ALL.iter().map(|(_, text, _, _)| *text).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn naga_lays_every_struct_out_as_rust_does() {
+        let module = naga::front::wgsl::parse_str(&wgsl()).unwrap();
+        for (name, _, fields, size) in ALL {
+            let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+            let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is not a struct") };
+            assert_eq!(*span as usize, *size, "{name}: size");
+            for (member, (field, offset)) in members.iter().zip(*fields) {
+                assert_eq!((member.name.as_deref(), member.offset as usize), (Some(*field), *offset), "{name}");
+            }
+        }
+    }
+}
