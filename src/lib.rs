@@ -1,6 +1,15 @@
 //! Specula: a real-time, physically based glTF renderer on wgpu.
 
+pub mod bake;
+pub mod capture;
+pub mod frame;
+pub mod gpu;
+pub mod gpu_scene;
 pub mod math;
+pub mod passes;
 pub mod progress;
+pub mod renderer;
 pub mod scene;
 pub mod shader;
+
+pub use {glam, wgpu};

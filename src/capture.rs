@@ -1,0 +1,176 @@
+//! Frames without a window: our own device and targets, and the picture back in memory.
+
+use crate::gpu::formats::{self, Precision};
+use crate::gpu::{Gpu, GpuError, Readback, read_texture};
+use crate::gpu_scene::GpuScene;
+use crate::passes::ForwardTarget;
+use crate::renderer::{FrameStats, RadianceTarget, RenderError, Renderer};
+use crate::scene::{RadianceImage, View};
+use glam::Vec4;
+use half::f16;
+
+/// Why there is no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaptureError {
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error("{adapter} cannot draw {format} with {samples} samples a pixel; it can with {possible:?}")]
+    Target { adapter: String, format: String, samples: u32, possible: Vec<u32> },
+}
+
+/// How a frame is captured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CaptureOptions {
+    /// Samples a pixel: 1 or 4.
+    pub samples: u32,
+    pub precision: Precision,
+}
+
+impl Default for CaptureOptions {
+    fn default() -> Self {
+        Self { samples: 4, precision: Precision::Half }
+    }
+}
+
+/// The textures that frames of one size are drawn into.
+#[derive(Debug)]
+pub struct CaptureTarget {
+    options: CaptureOptions,
+    multisampled: Option<wgpu::TextureView>,
+    depth: wgpu::TextureView,
+    radiance: wgpu::Texture,
+    display: wgpu::Texture,
+}
+
+impl CaptureTarget {
+    pub fn new(gpu: &Gpu, view: &View, options: CaptureOptions) -> Result<Self, CaptureError> {
+        let CaptureOptions { samples, precision } = options;
+        let format = precision.hdr_format();
+        check_samples(gpu, format, samples)?;
+        let size = wgpu::Extent3d { width: view.size_px.x, height: view.size_px.y, depth_or_array_layers: 1 };
+        let texture = |label, format, sample_count, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size,
+                mip_level_count: 1,
+                sample_count,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let readable = attachment | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+        let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
+        Ok(Self {
+            options,
+            multisampled: (samples > 1).then(|| view(texture("multisampled radiance", format, samples, attachment))),
+            depth: view(texture("depth", formats::DEPTH, samples, attachment)),
+            radiance: texture("radiance", format, 1, readable),
+            display: texture("display", formats::CAPTURED_DISPLAY, 1, readable),
+        })
+    }
+
+    pub fn forward_target(&self) -> ForwardTarget {
+        ForwardTarget { format: self.options.precision.hdr_format(), samples: self.options.samples }
+    }
+}
+
+/// A frame that was recorded and submitted.
+#[derive(Debug)]
+pub struct PendingFrame {
+    pub stats: FrameStats,
+    precision: Precision,
+    width: u32,
+    height: u32,
+    radiance: Option<Readback>,
+    display: Option<Readback>,
+}
+
+/// What is wanted of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wanted {
+    pub radiance: bool,
+    pub display: bool,
+}
+
+/// A frame in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CapturedFrame {
+    pub radiance: Option<RadianceImage>,
+    /// RGBA8 from the top left: sRGB with straight alpha.
+    pub display: Option<Vec<u8>>,
+}
+
+/// Draws one frame and starts its way back.
+pub fn submit(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+    wanted: Wanted,
+) -> Result<PendingFrame, CaptureError> {
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("capture") });
+    let radiance = target.radiance.create_view(&Default::default());
+    let (color, resolve) = match &target.multisampled {
+        Some(multisampled) => (multisampled, Some(&radiance)),
+        None => (&radiance, None),
+    };
+    let ForwardTarget { format, samples } = target.forward_target();
+    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth };
+    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, &mut encoder, scene, view, &attachments)?;
+    if wanted.display {
+        let display = target.display.create_view(&Default::default());
+        let display = (&display, formats::CAPTURED_DISPLAY);
+        renderer.encode_display(&gpu.device, &mut encoder, view, &radiance, display)?;
+    }
+    let mut read = |on: bool, texture| on.then(|| read_texture(&gpu.device, &mut encoder, texture));
+    let radiance = read(wanted.radiance, &target.radiance);
+    let display = read(wanted.display, &target.display);
+    gpu.queue.submit([encoder.finish()]);
+    let (width, height) = (view.size_px.x, view.size_px.y);
+    Ok(PendingFrame { stats, precision: target.options.precision, width, height, radiance, display })
+}
+
+impl PendingFrame {
+    /// Waits for the frame.
+    pub fn wait(self, gpu: &Gpu) -> Result<CapturedFrame, CaptureError> {
+        let display = self.display.map(|readback| readback.wait(gpu)).transpose()?;
+        let radiance = self.radiance.map(|readback| readback.wait(gpu)).transpose()?;
+        gpu.check()?;
+        let texels = |bytes: Vec<u8>| match self.precision {
+            Precision::Float => bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect::<Vec<Vec4>>(),
+            Precision::Half => {
+                let halves = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned::<[f16; 4]>);
+                halves.map(|texel| Vec4::from_array(texel.map(f16::to_f32))).collect()
+            }
+        };
+        let (width, height) = (self.width, self.height);
+        Ok(CapturedFrame { radiance: radiance.map(|bytes| RadianceImage { width, height, texels: texels(bytes) }), display })
+    }
+}
+
+fn check_samples(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Result<(), CaptureError> {
+    let adapter_specific = wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
+    let features = if gpu.device.features().contains(adapter_specific) {
+        gpu.adapter.get_texture_format_features(format)
+    } else {
+        format.guaranteed_format_features(gpu.device.features())
+    };
+    let renderable = features.allowed_usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+    let resolvable = features.flags.contains(wgpu::TextureFormatFeatureFlags::MULTISAMPLE_RESOLVE);
+    let possible: Vec<u32> = [1, 2, 4, 8, 16]
+        .into_iter()
+        .filter(|&count| renderable && features.flags.sample_count_supported(count) && (count == 1 || resolvable))
+        .collect();
+    if possible.contains(&samples) {
+        return Ok(());
+    }
+    let format = format!("{format:?}");
+    Err(CaptureError::Target { adapter: gpu.info.name.clone(), format, samples, possible })
+}

@@ -1,0 +1,7 @@
+//! What will be drawn, decided on the CPU from scene and view alone: printable, testable, no GPU.
+
+mod drawables;
+mod plan;
+
+pub use drawables::{Drawable, Drawables, PlacedInstance};
+pub use plan::{Draw, FramePlan, PipelineKey, plan};

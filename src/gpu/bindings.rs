@@ -1,0 +1,80 @@
+//! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
+
+use crate::shader::{
+    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SceneFeatures, material_texture_binding,
+};
+use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
+
+/// Bindings of group 0 in the forward pass.
+pub const FRAME_UNIFORM: u32 = 0;
+pub const FRAME_INSTANCES: u32 = 1;
+pub const FRAME_DFG: u32 = 2;
+pub const FRAME_SAMPLER: u32 = 3;
+pub const FRAME_LIGHTS: u32 = 4;
+pub const FRAME_ENVIRONMENT: u32 = 5;
+pub const FRAME_ATLAS: u32 = 6;
+
+/// Group 0 of the forward pass: what the scene's light needs is bound, the rest has no binding.
+pub fn frame_layout(device: &Device, features: SceneFeatures) -> BindGroupLayout {
+    let mut entries = vec![
+        buffer(FRAME_UNIFORM, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform),
+        buffer(FRAME_INSTANCES, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }),
+    ];
+    if features.is_lit() {
+        entries.extend([texture(FRAME_DFG, true), sampler(FRAME_SAMPLER)]);
+    }
+    if features.punctual {
+        entries.push(buffer(FRAME_LIGHTS, ShaderStages::FRAGMENT, BufferBindingType::Storage { read_only: true }));
+    }
+    if features.environment {
+        entries.extend([
+            buffer(FRAME_ENVIRONMENT, ShaderStages::FRAGMENT, BufferBindingType::Uniform),
+            texture(FRAME_ATLAS, true),
+        ]);
+    }
+    layout(device, "frame", &entries)
+}
+
+/// Group 1 of the forward pass.
+pub fn material_layout(device: &Device, features: &MaterialFeatures) -> BindGroupLayout {
+    let samplers = features.sampler_count();
+    let mut entries = vec![buffer(MATERIAL_UNIFORM_BINDING, ShaderStages::FRAGMENT, BufferBindingType::Uniform)];
+    entries.extend((0..samplers).map(|index| sampler(MATERIAL_SAMPLER_BINDING + index)));
+    let textures = features.textures().enumerate();
+    entries.extend(textures.map(|(index, _)| texture(material_texture_binding(samplers, index), true)));
+    layout(device, "material", &entries)
+}
+
+/// The panorama behind the scene: uniform, texture, sampler.
+pub fn background_layout(device: &Device) -> BindGroupLayout {
+    let stages = ShaderStages::VERTEX_FRAGMENT;
+    layout(device, "background", &[buffer(0, stages, BufferBindingType::Uniform), texture(1, true), sampler(2)])
+}
+
+/// Scene radiance to display: uniform, texture.
+pub fn display_layout(device: &Device) -> BindGroupLayout {
+    layout(device, "display", &[buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform), texture(1, false)])
+}
+
+fn layout(device: &Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+fn buffer(binding: u32, visibility: ShaderStages, ty: BufferBindingType) -> BindGroupLayoutEntry {
+    let ty = BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+fn texture(binding: u32, filterable: bool) -> BindGroupLayoutEntry {
+    let ty = BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn sampler(binding: u32) -> BindGroupLayoutEntry {
+    let ty = BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::FRAGMENT, ty, count: None }
+}

@@ -1,0 +1,142 @@
+//! Finding an adapter and opening it for headless work.
+
+use super::formats::Precision;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Which adapter is wanted.
+#[derive(Debug, Clone, Default)]
+pub struct GpuRequest {
+    /// Part of the adapter's name, in any case.
+    pub adapter: Option<String>,
+    /// Backends to look at; all that were built when empty.
+    pub backends: Option<wgpu::Backends>,
+}
+
+/// How the device is to be opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct GpuOptions {
+    /// Ask for what a float32 target with blending and multisampling needs, where the adapter has it.
+    pub precision: Precision,
+}
+
+/// Why there is no device.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum GpuError {
+    #[error("no usable graphics adapter was found (looked at {looked_at})")]
+    NoAdapter { looked_at: String },
+    #[error("no adapter matches {wanted:?}; found: {found}")]
+    NoMatch { wanted: String, found: String },
+    #[error("the adapter {adapter} gave no device: {reason}")]
+    NoDevice { adapter: String, reason: String },
+    #[error("the GPU failed: {0}")]
+    Failed(String),
+}
+
+/// An open device of our own, for capture and tests; embedders bring theirs.
+#[derive(Debug)]
+pub struct Gpu {
+    pub info: wgpu::AdapterInfo,
+    pub adapter: wgpu::Adapter,
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    errors: Arc<Mutex<Vec<String>>>,
+}
+
+/// The optional features that Specula uses when they are there; none is required.
+pub fn usable_features(precision: Precision) -> wgpu::Features {
+    let float_target = match precision {
+        Precision::Half => wgpu::Features::empty(),
+        Precision::Float => {
+            wgpu::Features::FLOAT32_BLENDABLE | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
+        }
+    };
+    float_target | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
+}
+
+impl Gpu {
+    /// Opens the best adapter that matches: hardware before software, a native API before GL.
+    pub fn open(request: &GpuRequest, options: GpuOptions) -> Result<Self, GpuError> {
+        pollster::block_on(Self::open_async(request, options))
+    }
+
+    async fn open_async(request: &GpuRequest, options: GpuOptions) -> Result<Self, GpuError> {
+        let adapter = choose_adapter(request).await?;
+        let info = adapter.get_info();
+        let adapter_limits = adapter.limits();
+        let limits = wgpu::Limits {
+            max_texture_dimension_2d: adapter_limits.max_texture_dimension_2d,
+            max_buffer_size: adapter_limits.max_buffer_size,
+            max_storage_buffer_binding_size: adapter_limits.max_storage_buffer_binding_size,
+            ..wgpu::Limits::default().or_worse_values_from(&adapter_limits)
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("specula"),
+            required_features: adapter.features() & usable_features(options.precision),
+            required_limits: limits,
+            ..Default::default()
+        };
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
+            .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+        let errors = Arc::new(Mutex::new(Vec::new()));
+        let sink = Arc::clone(&errors);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            sink.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
+        }));
+        Ok(Self { info, adapter, device, queue, errors })
+    }
+
+    /// Fails when the driver or wgpu has reported anything since the last call.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let mut errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(first) = errors.first().map(|message| one_line(message)) else { return Ok(()) };
+        errors.clear();
+        Err(GpuError::Failed(first))
+    }
+
+    /// Name, API and driver in one line.
+    pub fn description(&self) -> String {
+        let wgpu::AdapterInfo { name, backend, driver, driver_info, .. } = &self.info;
+        format!("{name} ({backend}, {driver} {driver_info})")
+    }
+}
+
+async fn choose_adapter(request: &GpuRequest) -> Result<wgpu::Adapter, GpuError> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    if let Some(backends) = request.backends {
+        descriptor.backends = backends;
+    }
+    let backends = descriptor.backends;
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = instance.enumerate_adapters(backends).await;
+    if adapters.is_empty() {
+        return Err(GpuError::NoAdapter { looked_at: format!("{backends:?}") });
+    }
+    if let Some(wanted) = &request.adapter {
+        let found = adapters.iter().map(|adapter| adapter.get_info().name).collect::<Vec<_>>().join(", ");
+        let wanted_lower = wanted.to_lowercase();
+        adapters.retain(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted_lower));
+        if adapters.is_empty() {
+            return Err(GpuError::NoMatch { wanted: wanted.clone(), found });
+        }
+    }
+    adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+    adapters.into_iter().next().ok_or_else(|| GpuError::NoAdapter { looked_at: format!("{backends:?}") })
+}
+
+/// Lower is better.
+fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
+    let device = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Cpu => 3,
+        wgpu::DeviceType::Other => 4,
+    };
+    (device, u8::from(info.backend == wgpu::Backend::Gl))
+}
+
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,49 @@
+//! Texture formats by role. No other file names a format.
+
+use wgpu::TextureFormat;
+
+/// Depth, reversed: 1 at the near plane, 0 at infinity.
+pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+/// Display values of a captured frame; the shader applies the sRGB transfer, so that all adapters round alike.
+pub const CAPTURED_DISPLAY: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Prefiltered environments and panoramas.
+pub const ENVIRONMENT: TextureFormat = TextureFormat::Rgba16Float;
+/// 8-bit textures that hold sRGB colour.
+pub const COLOR_TEXTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// 8-bit textures that hold numbers.
+pub const DATA_TEXTURE: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Textures that came with 16 bits a channel, made linear.
+pub const DEEP_TEXTURE: TextureFormat = TextureFormat::Rgba16Float;
+
+/// Precision of the target that scene radiance is accumulated in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Precision {
+    /// 11 bits of significand, up to 65504 cd/m2.
+    #[default]
+    Half,
+    /// 24 bits of significand. Needs an adapter that can blend and multisample it.
+    Float,
+}
+
+impl Precision {
+    pub fn hdr_format(self) -> TextureFormat {
+        match self {
+            Self::Half => TextureFormat::Rgba16Float,
+            Self::Float => TextureFormat::Rgba32Float,
+        }
+    }
+}
+
+/// The split-sum table: 16-bit normalised where the device has it, else half floats (error 1e-4 instead of 4e-5).
+pub fn dfg_table(features: wgpu::Features) -> TextureFormat {
+    if features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM) {
+        TextureFormat::Rgba16Unorm
+    } else {
+        TextureFormat::Rgba16Float
+    }
+}
+
+/// Whether a target of this format applies the sRGB transfer by itself.
+pub fn encodes_srgb(format: TextureFormat) -> bool {
+    format.is_srgb()
+}

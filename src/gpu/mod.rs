@@ -1,0 +1,9 @@
+//! The device, the formats by role, the bind-group layouts, and the way back to memory.
+
+pub mod bindings;
+mod device;
+pub mod formats;
+mod readback;
+
+pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};
+pub use readback::{Readback, read_texture};

@@ -1,0 +1,63 @@
+//! Copying a texture back to memory.
+
+use super::device::{Gpu, GpuError};
+
+/// A texture on its way to memory.
+#[derive(Debug)]
+pub struct Readback {
+    buffer: wgpu::Buffer,
+    row_bytes: usize,
+    padded_row_bytes: usize,
+    rows: usize,
+}
+
+/// Records the copy of level 0 of `texture`; the bytes are there after the encoder was submitted.
+pub fn read_texture(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Readback {
+    let size = texture.size();
+    let texel_bytes = texture.format().block_copy_size(None).unwrap_or(0) as usize;
+    let row_bytes = size.width as usize * texel_bytes;
+    let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: (padded_row_bytes * size.height as usize) as u64,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(padded_row_bytes as u32),
+        rows_per_image: None,
+    };
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        size,
+    );
+    Readback { buffer, row_bytes, padded_row_bytes, rows: size.height as usize }
+}
+
+impl Readback {
+    /// Waits for the copy and returns the texels, row-major without padding. Fails when the device reported an error.
+    pub fn wait(self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        self.buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver is alive until this function returns; a failed send has no one to tell.
+            let _ = sender.send(result);
+        });
+        gpu.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|error| GpuError::Failed(format!("waiting for the frame: {error}")))?;
+        gpu.check()?;
+        match receiver.try_recv() {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => return Err(GpuError::Failed(format!("mapping the frame: {error}"))),
+            Err(_) => return Err(GpuError::Failed("mapping the frame: no answer".into())),
+        }
+        let mapped = self.buffer.slice(..).get_mapped_range().map_err(|error| GpuError::Failed(error.to_string()))?;
+        let mut bytes = Vec::with_capacity(self.row_bytes * self.rows);
+        for row in mapped.chunks_exact(self.padded_row_bytes) {
+            bytes.extend_from_slice(&row[..self.row_bytes]);
+        }
+        Ok(bytes)
+    }
+}

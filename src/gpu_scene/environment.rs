@@ -1,0 +1,127 @@
+//! An environment on the GPU: the prefiltered atlas, its uniform, and the panorama when it is seen.
+
+use super::UploadError;
+use crate::gpu::formats;
+use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps};
+use crate::shader::types::EnvironmentUniform;
+use glam::{DMat3, Vec3};
+use half::f16;
+use std::sync::Arc;
+use wgpu::util::DeviceExt;
+
+/// Radiance that half floats hold with room for a filter's rounding.
+const HALF_MAX: f32 = 65000.0;
+
+/// What the forward pass reads.
+#[derive(Debug)]
+pub(crate) struct GpuEnvironment {
+    pub(crate) atlas: wgpu::TextureView,
+    pub(crate) uniform: wgpu::Buffer,
+    pub(crate) environment_from_world: DMat3,
+    pub(crate) intensity: f32,
+    image: Arc<EnvironmentImage>,
+    panorama: Option<Panorama>,
+}
+
+/// The panorama as a texture, divided by `scale` so that its brightest texel is a half float.
+#[derive(Debug, Clone)]
+pub struct Panorama {
+    pub(crate) view: wgpu::TextureView,
+    pub(crate) scale: f32,
+}
+
+impl GpuEnvironment {
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        environment: &Environment,
+        maps: &EnvironmentMaps,
+    ) -> Result<Self, UploadError> {
+        let (atlas, scale) = upload(device, queue, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
+        let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
+        let intensity = environment.intensity;
+        let mut tiles = [[0.0; 4]; 9];
+        let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
+        for (tile, out) in maps.tiles.iter().zip(&mut tiles) {
+            let [x, y] = tile.origin.map(|texel| texel as f32);
+            *out = [x / width, y / height, tile.size as f32 / width, tile.size as f32 / height];
+        }
+        let uniform = EnvironmentUniform {
+            irradiance_over_pi: maps.irradiance_over_pi.map(|c| (c * intensity).as_vec3().extend(0.0).to_array()),
+            tiles,
+            environment_from_world: columns(environment_from_world),
+            radiance_scale: scale * intensity as f32,
+            level_scale: (maps.tiles.len() - 1) as f32,
+            ..Default::default()
+        };
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("environment"),
+            contents: bytemuck::bytes_of(&uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        Ok(Self {
+            atlas,
+            uniform,
+            environment_from_world,
+            intensity: intensity as f32,
+            image: Arc::clone(&environment.image),
+            panorama: None,
+        })
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.atlas.texture().size();
+        u64::from(size.width) * u64::from(size.height) * 8
+    }
+
+    /// The panorama, uploaded when it is first seen.
+    pub(crate) fn panorama(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Panorama, UploadError> {
+        if let Some(panorama) = &self.panorama {
+            return Ok(panorama.clone());
+        }
+        let EnvironmentImage { width, height, ref texels } = *self.image;
+        let (view, scale) = upload(device, queue, "panorama", width, height, texels)?;
+        let panorama = Panorama { view, scale };
+        self.panorama = Some(panorama.clone());
+        Ok(panorama)
+    }
+}
+
+/// A rotation as the columns of a WGSL mat3x3f.
+pub(crate) fn columns(matrix: DMat3) -> [[f32; 4]; 3] {
+    [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|column| column.as_vec3().extend(0.0).to_array())
+}
+
+fn upload(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    width: u32,
+    height: u32,
+    texels: &[Vec3],
+) -> Result<(wgpu::TextureView, f32), UploadError> {
+    let allowed = device.limits().max_texture_dimension_2d;
+    if width.max(height) > allowed {
+        return Err(UploadError::EnvironmentTooLarge { width, height, allowed });
+    }
+    let peak = texels.iter().map(|texel| texel.max_element()).fold(0.0, f32::max);
+    let scale = (peak / HALF_MAX).max(1.0);
+    let halves: Vec<[f16; 4]> =
+        texels.iter().map(|texel| (*texel / scale).extend(1.0).to_array().map(f16::from_f32)).collect();
+    let texture = device.create_texture_with_data(
+        queue,
+        &wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: formats::ENVIRONMENT,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(&halves),
+    );
+    Ok((texture.create_view(&Default::default()), scale))
+}

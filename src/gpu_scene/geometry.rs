@@ -1,0 +1,79 @@
+//! Vertices and indices: two buffers for the whole scene, holding only the attributes that some draw reads.
+
+use super::UploadError;
+use crate::frame::Drawables;
+use crate::scene::{Primitive, Scene};
+use crate::shader::VertexFeatures;
+use std::collections::HashMap;
+use std::ops::Range;
+use wgpu::util::DeviceExt;
+
+/// Where a primitive's data lie.
+#[derive(Debug, Clone)]
+pub(crate) struct GpuPrimitive {
+    /// Byte ranges in the vertex buffer, in the order of [`crate::shader::attributes`].
+    pub(crate) attributes: Vec<Range<u64>>,
+    /// Range in the index buffer, counted in indices.
+    pub(crate) indices: Range<u32>,
+}
+
+pub(crate) struct Geometry {
+    pub(crate) vertices: wgpu::Buffer,
+    pub(crate) indices: wgpu::Buffer,
+    pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
+}
+
+/// Uploads every primitive that is drawn, once.
+pub(crate) fn upload_primitives(
+    device: &wgpu::Device,
+    scene: &Scene,
+    drawables: &Drawables,
+) -> Result<Geometry, UploadError> {
+    let (mut vertices, mut indices) = (Vec::<u8>::new(), Vec::<u32>::new());
+    let mut primitives = HashMap::new();
+    for drawable in &drawables.draws {
+        let key = (drawable.mesh, drawable.primitive);
+        primitives.entry(key).or_insert_with(|| {
+            let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
+            let attributes = append_attributes(&mut vertices, primitive, &drawable.vertex_features);
+            let first = indices.len() as u32;
+            indices.extend_from_slice(&primitive.indices);
+            GpuPrimitive { attributes, indices: first..indices.len() as u32 }
+        });
+    }
+    let buffer = |what, contents: &[u8], usage| {
+        let (needed, allowed) = (contents.len() as u64, device.limits().max_buffer_size);
+        if needed > allowed {
+            return Err(UploadError::TooLarge { what, needed, allowed });
+        }
+        Ok(device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage }))
+    };
+    Ok(Geometry {
+        vertices: buffer("vertex data", &vertices, wgpu::BufferUsages::VERTEX)?,
+        indices: buffer("index data", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX)?,
+        primitives,
+    })
+}
+
+fn append_attributes(bytes: &mut Vec<u8>, primitive: &Primitive, features: &VertexFeatures) -> Vec<Range<u64>> {
+    let mut ranges = Vec::new();
+    let mut append = |data: &[u8]| {
+        let start = bytes.len() as u64;
+        bytes.extend_from_slice(data);
+        ranges.push(start..bytes.len() as u64);
+    };
+    append(bytemuck::cast_slice(&primitive.positions));
+    if let (true, Some(normals)) = (features.normal, &primitive.normals) {
+        append(bytemuck::cast_slice(normals));
+    }
+    if let (true, Some(tangents)) = (features.tangent, &primitive.tangents) {
+        append(bytemuck::cast_slice(tangents));
+    }
+    if let (true, Some(colors)) = (features.color, &primitive.colors) {
+        append(bytemuck::cast_slice(colors));
+    }
+    for set in features.uv_sets() {
+        append(bytemuck::cast_slice(&primitive.uvs[set as usize]));
+    }
+    ranges
+}

@@ -1,0 +1,117 @@
+//! Material uniforms and bind groups: one a material and set of features, with only what those features read.
+
+use super::entry;
+use super::mips::Role;
+use super::textures::TextureCache;
+use crate::frame::Drawables;
+use crate::gpu::bindings::material_layout;
+use crate::scene::{AlphaMode, Material, Scene, TextureSlot};
+use crate::shader::{
+    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, material_samplers, material_texture_binding,
+    types,
+};
+use std::collections::HashMap;
+use wgpu::util::DeviceExt;
+
+/// Bind groups of group 1 and their layouts.
+#[derive(Debug, Default)]
+pub(crate) struct Materials {
+    pub(crate) groups: HashMap<(usize, MaterialFeatures), wgpu::BindGroup>,
+    pub(crate) layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
+}
+
+/// Uploads what the draws read. Returns the groups, the bytes of all textures, and warnings.
+pub(crate) fn upload(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    scene: &Scene,
+    drawables: &Drawables,
+) -> (Materials, u64, Vec<String>) {
+    let mut cache = TextureCache::default();
+    let mut materials = Materials::default();
+    for drawable in &drawables.draws {
+        let key = (drawable.material, drawable.material_features);
+        if materials.groups.contains_key(&key) {
+            continue;
+        }
+        let layout = materials.layouts.entry(key.1).or_insert_with(|| material_layout(device, &key.1));
+        let group = bind(device, queue, scene, &mut cache, layout, key);
+        materials.groups.insert(key, group);
+    }
+    (materials, cache.bytes, cache.warnings)
+}
+
+fn bind(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    scene: &Scene,
+    cache: &mut TextureCache,
+    layout: &wgpu::BindGroupLayout,
+    (index, features): (usize, MaterialFeatures),
+) -> wgpu::BindGroup {
+    let material = &scene.materials[index];
+    let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: material.name.as_deref(),
+        contents: bytemuck::bytes_of(&uniform(material)),
+        usage: wgpu::BufferUsages::UNIFORM,
+    });
+    let sampler_count = features.sampler_count();
+    let samplers: Vec<wgpu::Sampler> = material_samplers(material, scene)
+        .into_iter()
+        .take(sampler_count as usize)
+        .map(|sampler| cache.sampler(device, sampler))
+        .collect();
+    let views: Vec<wgpu::TextureView> = features
+        .textures()
+        .filter_map(|(slot, _)| Some((slot, scene.textures[material.texture(slot)?.texture])))
+        .map(|(slot, texture)| {
+            let mipmapped = texture.sampler.mip_linear.is_some();
+            cache.view(device, queue, scene, (texture.image, role(slot, material), mipmapped))
+        })
+        .collect();
+    let mut entries = vec![entry(MATERIAL_UNIFORM_BINDING, uniform.as_entire_binding())];
+    for (index, sampler) in samplers.iter().enumerate() {
+        let binding = MATERIAL_SAMPLER_BINDING + index as u32;
+        entries.push(entry(binding, wgpu::BindingResource::Sampler(sampler)));
+    }
+    for (index, view) in views.iter().enumerate() {
+        let binding = material_texture_binding(sampler_count, index);
+        entries.push(entry(binding, wgpu::BindingResource::TextureView(view)));
+    }
+    let label = material.name.as_deref();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
+}
+
+fn role(slot: TextureSlot, material: &Material) -> Role {
+    match slot {
+        TextureSlot::Normal => Role::Normal,
+        TextureSlot::BaseColor if material.alpha_mode != AlphaMode::Opaque => Role::ColorWithCoverage,
+        slot if slot.is_srgb() => Role::Color,
+        _ => Role::Data,
+    }
+}
+
+fn uniform(material: &Material) -> types::MaterialUniform {
+    let mut uv_transforms = [[0.0; 4]; 2 * TextureSlot::ALL.len()];
+    for (slot, texture) in material.textures() {
+        let rows = texture.transform.matrix().transpose();
+        let row = 2 * slot as usize;
+        uv_transforms[row] = rows.x_axis.extend(0.0).to_array();
+        uv_transforms[row + 1] = rows.y_axis.extend(0.0).to_array();
+    }
+    let alpha_cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { 0.0 };
+    types::MaterialUniform {
+        base_color: material.base_color.to_array(),
+        emissive: material.emissive_nits.to_array(),
+        metallic: material.metallic,
+        specular_color: material.specular_color.to_array(),
+        specular: material.specular,
+        perceptual_roughness: material.perceptual_roughness,
+        dielectric_F0: material.dielectric_f0(),
+        normal_scale: material.normal_scale,
+        occlusion_strength: material.occlusion_strength,
+        alpha_cutoff,
+        uv_transforms,
+        ..Default::default()
+    }
+}

@@ -1,0 +1,210 @@
+//! Mip chains, filtered in linear light.
+//!
+//! A level is an area-weighted average of the one above, in float32: odd sizes lose nothing. Colours are averaged as
+//! light and not as sRGB codes; where alpha is coverage they are weighted with it, so that what is invisible does not
+//! bleed into what is not; normals are averaged as vectors and brought back to unit length.
+
+use crate::math::color::{linear_from_srgb, srgb_from_linear};
+use crate::scene::{Image, Pixels};
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+/// What the channels of a texture mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// RGB in sRGB, alpha ignored.
+    Color,
+    /// RGB in sRGB, alpha is coverage.
+    ColorWithCoverage,
+    /// Numbers.
+    Data,
+    /// A tangent-space normal around 0.5.
+    Normal,
+}
+
+impl Role {
+    pub fn is_srgb(self) -> bool {
+        matches!(self, Self::Color | Self::ColorWithCoverage)
+    }
+}
+
+/// One level: linear values, as 8-bit codes (sRGB for colours) or half floats.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Level {
+    pub width: u32,
+    pub height: u32,
+    pub bytes: Vec<u8>,
+}
+
+/// Level 0 and, with `mipmapped`, all smaller ones, from the first that is not larger than `max_side` on.
+///
+/// 8-bit images give RGBA8 levels, encoded as they came; 16-bit ones linear RGBA16F.
+pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<Level> {
+    let fits = |width: u32, height: u32| width.max(height) <= max_side;
+    let (mut width, mut height) = (image.width, image.height);
+    let mut levels = Vec::new();
+    if let (Pixels::Rgba8(bytes), true) = (&image.pixels, fits(width, height)) {
+        levels.push(Level { width, height, bytes: bytes.to_vec() });
+        if !mipmapped || width.max(height) == 1 {
+            return levels;
+        }
+    }
+    let mut linear = linear_texels(image, role);
+    if levels.is_empty() && fits(width, height) {
+        levels.push(encode(&linear, width, height, image, role));
+    }
+    while width.max(height) > 1 && (mipmapped || levels.is_empty()) {
+        let (w, h) = ((width / 2).max(1), (height / 2).max(1));
+        linear = halve(&linear, (width, height), (w, h));
+        (width, height) = (w, h);
+        if fits(width, height) {
+            levels.push(encode(&linear, width, height, image, role));
+        }
+    }
+    levels
+}
+
+/// RGBA in linear light; colours multiplied with alpha where it is coverage, normals in [-1, 1].
+fn linear_texels(image: &Image, role: Role) -> Vec<Vec4> {
+    match &image.pixels {
+        Pixels::Rgba8(bytes) => {
+            let plain: Vec<f32> = (0..256).map(|code| code as f32 / 255.0).collect();
+            let color: Vec<f32> = (0..256).map(|code| linear_from_srgb(f64::from(code) / 255.0) as f32).collect();
+            let rgb = if role.is_srgb() { &color } else { &plain };
+            let decode = |texel: &[u8]| {
+                let [r, g, b, a] = [texel[0], texel[1], texel[2], texel[3]].map(usize::from);
+                weigh(Vec4::new(rgb[r], rgb[g], rgb[b], plain[a]), role)
+            };
+            bytes.par_chunks_exact(4).map(decode).collect()
+        }
+        Pixels::Rgba16(words) => {
+            let decode = |texel: &[u16]| {
+                let value = |word: u16| f64::from(word) / 65535.0;
+                let rgb = |word: u16| if role.is_srgb() { linear_from_srgb(value(word)) } else { value(word) } as f32;
+                weigh(Vec4::new(rgb(texel[0]), rgb(texel[1]), rgb(texel[2]), value(texel[3]) as f32), role)
+            };
+            words.par_chunks_exact(4).map(decode).collect()
+        }
+    }
+}
+
+fn weigh(texel: Vec4, role: Role) -> Vec4 {
+    match role {
+        Role::Color | Role::Data => texel,
+        Role::ColorWithCoverage => (texel.truncate() * texel.w).extend(texel.w),
+        Role::Normal => (texel.truncate() * 2.0 - 1.0).extend(texel.w),
+    }
+}
+
+/// Undoes [`weigh`] after averaging.
+fn unweigh(texel: Vec4, role: Role) -> Vec4 {
+    match role {
+        Role::Color | Role::Data => texel,
+        Role::ColorWithCoverage if texel.w > 0.0 => (texel.truncate() / texel.w).extend(texel.w),
+        Role::ColorWithCoverage => Vec4::ZERO,
+        Role::Normal => (texel.truncate().normalize_or(Vec3::Z) * 0.5 + 0.5).extend(texel.w),
+    }
+}
+
+/// The source texels that one destination texel covers along an axis, with their weights (which sum to 1).
+fn coverage(source: u32, target: u32, index: u32) -> impl Iterator<Item = (usize, f32)> + Clone {
+    let ratio = f64::from(source) / f64::from(target);
+    let (start, end) = (f64::from(index) * ratio, (f64::from(index) + 1.0) * ratio);
+    let texels = start as u32..(end.ceil() as u32).min(source);
+    texels.filter_map(move |texel| {
+        let overlap = end.min(f64::from(texel) + 1.0) - start.max(f64::from(texel));
+        (overlap > 1e-9).then_some((texel as usize, (overlap / ratio) as f32))
+    })
+}
+
+fn halve(texels: &[Vec4], (width, height): (u32, u32), (w, h): (u32, u32)) -> Vec<Vec4> {
+    let mut out = vec![Vec4::ZERO; w as usize * h as usize];
+    out.par_chunks_exact_mut(w as usize).zip(0..h).for_each(|(row, y)| {
+        let rows: Vec<(usize, f32)> = coverage(height, h, y).collect();
+        for (x, texel) in row.iter_mut().enumerate() {
+            for (column, weight_x) in coverage(width, w, x as u32) {
+                for &(line, weight_y) in &rows {
+                    *texel += texels[line * width as usize + column] * (weight_x * weight_y);
+                }
+            }
+        }
+    });
+    out
+}
+
+fn encode(texels: &[Vec4], width: u32, height: u32, image: &Image, role: Role) -> Level {
+    let bytes = match image.pixels {
+        Pixels::Rgba8(_) => {
+            let code = |value: f32| (value * 255.0 + 0.5) as u8;
+            let color = |value: f32| {
+                if role.is_srgb() { code(srgb_from_linear(f64::from(value)) as f32) } else { code(value) }
+            };
+            let encode = |texel: &Vec4| {
+                let [r, g, b, a] = unweigh(*texel, role).to_array();
+                [color(r), color(g), color(b), code(a)]
+            };
+            texels.par_iter().flat_map_iter(encode).collect()
+        }
+        Pixels::Rgba16(_) => {
+            let encode = |texel: &Vec4| unweigh(*texel, role).to_array().map(half::f16::from_f32);
+            let halves: Vec<half::f16> = texels.par_iter().flat_map_iter(encode).collect();
+            bytemuck::cast_slice(&halves).to_vec()
+        }
+    };
+    Level { width, height, bytes }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Image {
+        let bytes: Vec<u8> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| texel(x, y)).collect();
+        Image { name: None, width, height, pixels: Pixels::Rgba8(bytes.into()) }
+    }
+
+    #[test]
+    fn a_checkerboard_averages_as_light() {
+        let board = image(4, 4, |x, y| if (x + y) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] });
+        let levels = chain(&board, Role::Color, true, 4096);
+        assert_eq!(levels.len(), 3);
+        // Half the light of white is sRGB code 188, not 128.
+        assert!(levels[1..].iter().all(|level| level.bytes.chunks(4).all(|texel| texel == [188, 188, 188, 255])));
+        let data = chain(&board, Role::Data, true, 4096);
+        assert_eq!(&data[2].bytes, &[128, 128, 128, 255]);
+    }
+
+    #[test]
+    fn odd_sizes_keep_the_mean() {
+        let ramp = image(5, 3, |x, y| [(x * 40 + y * 10) as u8, 0, 0, 255]);
+        let mean = (0..3).flat_map(|y| (0..5).map(move |x| x * 40 + y * 10)).sum::<u32>() as f32 / 15.0;
+        let levels = chain(&ramp, Role::Data, true, 4096);
+        assert_eq!((levels[1].width, levels[1].height), (2, 1));
+        let last = levels.last().unwrap();
+        assert!((f32::from(last.bytes[0]) - mean).abs() <= 0.5, "{} instead of {mean}", last.bytes[0]);
+    }
+
+    #[test]
+    fn what_is_invisible_does_not_bleed() {
+        let leaf = image(2, 1, |x, _| if x == 0 { [0, 255, 0, 255] } else { [255, 0, 255, 0] });
+        let level = &chain(&leaf, Role::ColorWithCoverage, true, 4096)[1];
+        assert_eq!(level.bytes, [0, 255, 0, 128]);
+    }
+
+    #[test]
+    fn normals_stay_unit_vectors() {
+        let bumps = image(2, 2, |x, _| if x == 0 { [255, 128, 128, 255] } else { [128, 128, 255, 255] });
+        let level = &chain(&bumps, Role::Normal, true, 4096)[1];
+        let n = Vec3::new(f32::from(level.bytes[0]), f32::from(level.bytes[1]), f32::from(level.bytes[2])) / 127.5 - 1.0;
+        assert!((n.length() - 1.0).abs() < 0.01, "{n}");
+    }
+
+    #[test]
+    fn levels_above_the_limit_are_left_out() {
+        let large = image(16, 8, |_, _| [7, 7, 7, 255]);
+        let levels = chain(&large, Role::Data, true, 4);
+        assert_eq!(levels.iter().map(|level| (level.width, level.height)).collect::<Vec<_>>(), [(4, 2), (2, 1), (1, 1)]);
+        assert_eq!(chain(&large, Role::Data, false, 4).len(), 1);
+        assert_eq!(chain(&large, Role::Data, false, 16).len(), 1);
+    }
+}

@@ -1,0 +1,198 @@
+//! A [`Scene`] on the GPU: buffers, textures and bind groups, made once.
+
+mod environment;
+mod geometry;
+mod materials;
+pub mod mips;
+mod textures;
+
+use crate::frame::{Drawables, PlacedInstance};
+use crate::gpu::bindings::{self, frame_layout};
+use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
+use crate::shader::{SceneFeatures, types};
+use environment::GpuEnvironment;
+use geometry::{GpuPrimitive, upload_primitives};
+use glam::{DMat3, DMat4, DVec3};
+use std::collections::HashMap;
+use wgpu::util::DeviceExt;
+
+pub use environment::Panorama;
+
+/// Why a scene cannot be put on this device.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum UploadError {
+    #[error("{what} needs {needed} bytes, the device allows {allowed}")]
+    TooLarge { what: &'static str, needed: u64, allowed: u64 },
+    #[error("the environment is {width} x {height}, the device allows textures up to {allowed}; use a smaller one")]
+    EnvironmentTooLarge { width: u32, height: u32, allowed: u32 },
+    #[error("the scene has an environment, but no maps baked from it were given")]
+    MissingMaps,
+}
+
+/// Bytes of GPU memory that a scene takes, by kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct UploadedBytes {
+    pub geometry: u64,
+    pub textures: u64,
+    pub environment: u64,
+}
+
+/// What drawing reads of a scene.
+#[derive(Debug)]
+pub struct GpuScene {
+    pub features: SceneFeatures,
+    pub drawables: Drawables,
+    pub bytes: UploadedBytes,
+    /// Things that were drawn with less than was asked for.
+    pub warnings: Vec<String>,
+    /// Subtracted from every position before it becomes f32.
+    pub(crate) origin_in_world: DVec3,
+    pub(crate) light_count: u32,
+    pub(crate) vertices: wgpu::Buffer,
+    pub(crate) indices: wgpu::Buffer,
+    pub(crate) instances: wgpu::Buffer,
+    pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
+    pub(crate) materials: materials::Materials,
+    pub(crate) lights: Option<wgpu::Buffer>,
+    pub(crate) environment: Option<GpuEnvironment>,
+    pub(crate) frame_layout: wgpu::BindGroupLayout,
+}
+
+/// The device-lifetime resources that a scene's bind groups point at.
+#[derive(Debug)]
+pub struct SharedTextures {
+    pub dfg: wgpu::TextureView,
+    pub clamp_sampler: wgpu::Sampler,
+}
+
+impl GpuScene {
+    /// Uploads `scene`. `maps` are baked from its environment and needed when it has one.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        maps: Option<&EnvironmentMaps>,
+    ) -> Result<Self, UploadError> {
+        let features = SceneFeatures::of(scene);
+        let drawables = Drawables::new(scene, features);
+        let bounds = scene.bounds();
+        let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
+        let geometry = upload_primitives(device, scene, &drawables)?;
+        let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables);
+        let environment = match (features.environment, &scene.environment, maps) {
+            (true, Some(environment), Some(maps)) => Some(GpuEnvironment::new(device, queue, environment, maps)?),
+            (true, ..) => return Err(UploadError::MissingMaps),
+            (false, ..) => None,
+        };
+        let lights = scene.lights_in_world();
+        let light_data: Vec<types::Light> = lights.iter().map(|light| gpu_light(light, origin_in_world)).collect();
+        let instance_data: Vec<types::Instance> =
+            drawables.instances.iter().map(|placed| gpu_instance(placed, origin_in_world)).collect();
+        let storage = |label, contents: &[u8]| {
+            // An empty binding is not allowed; nothing reads the padding.
+            let contents = if contents.is_empty() { &[0; 128] } else { contents };
+            let usage = wgpu::BufferUsages::STORAGE;
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        };
+        Ok(Self {
+            features,
+            bytes: UploadedBytes {
+                geometry: geometry.vertices.size() + geometry.indices.size(),
+                textures: texture_bytes,
+                environment: environment.as_ref().map_or(0, GpuEnvironment::bytes),
+            },
+            warnings,
+            origin_in_world,
+            light_count: lights.len() as u32,
+            instances: storage("instances", bytemuck::cast_slice(&instance_data)),
+            lights: features.punctual.then(|| storage("lights", bytemuck::cast_slice(&light_data))),
+            drawables,
+            vertices: geometry.vertices,
+            indices: geometry.indices,
+            primitives: geometry.primitives,
+            materials,
+            environment,
+            frame_layout: frame_layout(device, features),
+        })
+    }
+
+    /// Group 0 of the forward pass, with the uniform of one view.
+    pub(crate) fn frame_group(
+        &self,
+        device: &wgpu::Device,
+        shared: &SharedTextures,
+        frame: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        let mut entries = vec![
+            entry(bindings::FRAME_UNIFORM, frame.as_entire_binding()),
+            entry(bindings::FRAME_INSTANCES, self.instances.as_entire_binding()),
+        ];
+        if self.features.is_lit() {
+            entries.push(entry(bindings::FRAME_DFG, wgpu::BindingResource::TextureView(&shared.dfg)));
+            entries.push(entry(bindings::FRAME_SAMPLER, wgpu::BindingResource::Sampler(&shared.clamp_sampler)));
+        }
+        if let Some(lights) = &self.lights {
+            entries.push(entry(bindings::FRAME_LIGHTS, lights.as_entire_binding()));
+        }
+        if let Some(environment) = &self.environment {
+            entries.push(entry(bindings::FRAME_ENVIRONMENT, environment.uniform.as_entire_binding()));
+            entries.push(entry(bindings::FRAME_ATLAS, wgpu::BindingResource::TextureView(&environment.atlas)));
+        }
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &self.frame_layout,
+            entries: &entries,
+        })
+    }
+}
+
+pub(crate) fn entry(binding: u32, resource: wgpu::BindingResource<'_>) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+fn gpu_instance(placed: &PlacedInstance, origin_in_world: DVec3) -> types::Instance {
+    let world = DMat4::from_translation(-origin_in_world) * placed.instance.world_from_object;
+    let rows = world.transpose();
+    let sign = if placed.mirrored { -1.0 } else { 1.0 };
+    let linear = DMat3::from_mat4(world);
+    let (x, y, z) = (linear.x_axis, linear.y_axis, linear.z_axis);
+    // Scaled to unit size, so that a model in micrometres does not underflow when squared in f32.
+    let cofactor = [y.cross(z), z.cross(x), x.cross(y)];
+    let largest = cofactor.iter().map(|column| column.abs().max_element()).fold(0.0, f64::max);
+    let scale = if largest > 0.0 { sign / largest } else { 0.0 };
+    types::Instance {
+        world_from_object: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec4().to_array()),
+        normal_from_object: cofactor.map(|column| (column * scale).extend(0.0).as_vec4().to_array()),
+        handedness: sign as f32,
+        ..Default::default()
+    }
+}
+
+fn gpu_light(light: &LightInWorld, origin_in_world: DVec3) -> types::Light {
+    let inverse_range_squared = |range: Option<f64>| range.map_or(0.0, |range| 1.0 / (range * range)) as f32;
+    let placed = types::Light {
+        position: (light.position_in_world - origin_in_world).as_vec3().to_array(),
+        w: 1.0,
+        intensity: light.intensity.as_vec3().to_array(),
+        direction: light.direction_in_world.as_vec3().to_array(),
+        spot_offset: 1.0,
+        ..Default::default()
+    };
+    match light.kind {
+        LightKind::Point { range_m } => {
+            types::Light { inverse_range_squared: inverse_range_squared(range_m), ..placed }
+        }
+        LightKind::Spot { range_m, inner_cone_rad, outer_cone_rad } => {
+            let scale = 1.0 / (inner_cone_rad.cos() - outer_cone_rad.cos()).max(1e-3);
+            types::Light {
+                inverse_range_squared: inverse_range_squared(range_m),
+                spot_scale: scale as f32,
+                spot_offset: (-outer_cone_rad.cos() * scale) as f32,
+                ..placed
+            }
+        }
+        LightKind::Directional => {
+            types::Light { position: (-light.direction_in_world).as_vec3().to_array(), w: 0.0, ..placed }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The panorama, drawn where no surface is.
+
+use super::ForwardTarget;
+use crate::gpu::bindings::background_layout;
+use crate::gpu::formats;
+use crate::gpu_scene::{Panorama, entry};
+use crate::shader::types::BackgroundUniform;
+use crate::shader::{Composed, ShaderError, background_module, create_module};
+use std::collections::HashMap;
+use wgpu::util::DeviceExt;
+
+/// The pipeline of the panorama, for each target.
+#[derive(Debug)]
+pub struct BackgroundPipeline {
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    module: Option<(Composed, wgpu::ShaderModule)>,
+    pipelines: HashMap<ForwardTarget, wgpu::RenderPipeline>,
+}
+
+/// What one view binds to see the panorama.
+#[derive(Debug)]
+pub struct BackgroundPass {
+    group: wgpu::BindGroup,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl BackgroundPipeline {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("panorama"),
+            address_mode_u: wgpu::AddressMode::Repeat,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self { layout: background_layout(device), sampler, module: None, pipelines: HashMap::new() }
+    }
+
+    /// Text of the module, once it was used.
+    pub fn source(&self) -> Option<&str> {
+        self.module.as_ref().map(|(composed, _)| composed.text.as_str())
+    }
+
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        target: ForwardTarget,
+        panorama: &Panorama,
+        uniform: &BackgroundUniform,
+    ) -> Result<BackgroundPass, ShaderError> {
+        let pipeline = self.pipeline(device, target)?;
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("background"),
+            contents: bytemuck::bytes_of(uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("background"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&panorama.view)),
+                entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
+            ],
+        });
+        Ok(BackgroundPass { group, pipeline })
+    }
+
+    fn pipeline(
+        &mut self,
+        device: &wgpu::Device,
+        target: ForwardTarget,
+    ) -> Result<wgpu::RenderPipeline, ShaderError> {
+        if let Some(pipeline) = self.pipelines.get(&target) {
+            return Ok(pipeline.clone());
+        }
+        let module = match &self.module {
+            Some((_, module)) => module.clone(),
+            None => {
+                let composed = background_module()?;
+                let module = create_module(device, "background", &composed)?;
+                self.module.insert((composed, module)).1.clone()
+            }
+        };
+        let pipeline = create_pipeline(device, &self.layout, &module, target);
+        self.pipelines.insert(target, pipeline.clone());
+        Ok(pipeline)
+    }
+}
+
+impl BackgroundPass {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn create_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    module: &wgpu::ShaderModule,
+    target: ForwardTarget,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("background"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("background"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: formats::DEPTH,
+            depth_write_enabled: Some(false),
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(target.format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,124 @@
+//! Scene radiance to display values: exposure, tone map, background colour, sRGB.
+
+use crate::gpu::bindings::display_layout;
+use crate::gpu_scene::entry;
+use crate::shader::types::DisplayUniform;
+use crate::shader::{Composed, DisplayFeatures, ShaderError, create_module, display_module};
+use std::collections::HashMap;
+use wgpu::util::DeviceExt;
+
+/// Display pipelines by features and target format.
+#[derive(Debug)]
+pub struct DisplayPipelines {
+    layout: wgpu::BindGroupLayout,
+    pipelines: HashMap<(DisplayFeatures, wgpu::TextureFormat), (Composed, wgpu::RenderPipeline)>,
+}
+
+/// What one view binds to be displayed.
+#[derive(Debug)]
+pub struct DisplayPass {
+    group: wgpu::BindGroup,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl DisplayPipelines {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self { layout: display_layout(device), pipelines: HashMap::new() }
+    }
+
+    /// Name and text of every module made so far.
+    pub fn sources(&self) -> impl Iterator<Item = (String, &str)> {
+        let name = |features: &DisplayFeatures| format!("display+{:?}", features.tone_map).to_lowercase();
+        self.pipelines.iter().map(move |((features, _), (composed, _))| (name(features), composed.text.as_str()))
+    }
+
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        features: DisplayFeatures,
+        format: wgpu::TextureFormat,
+        radiance: &wgpu::TextureView,
+        uniform: &DisplayUniform,
+    ) -> Result<DisplayPass, ShaderError> {
+        let pipeline = match self.pipelines.get(&(features, format)) {
+            Some((_, pipeline)) => pipeline.clone(),
+            None => {
+                let composed = display_module(features)?;
+                let module = create_module(device, "display", &composed)?;
+                let pipeline = create_pipeline(device, &self.layout, &module, format);
+                self.pipelines.insert((features, format), (composed, pipeline.clone()));
+                pipeline
+            }
+        };
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("display"),
+            contents: bytemuck::bytes_of(uniform),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("display"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(radiance)),
+            ],
+        });
+        Ok(DisplayPass { group, pipeline })
+    }
+}
+
+impl DisplayPass {
+    /// Overwrites all of `target`.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("display"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: None,
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn create_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    module: &wgpu::ShaderModule,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("display"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("display"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

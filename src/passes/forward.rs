@@ -1,0 +1,186 @@
+//! Surfaces: every draw with the shader of its features.
+
+use crate::frame::{Draw, FramePlan, PipelineKey};
+use crate::gpu::formats;
+use crate::gpu_scene::GpuScene;
+use crate::scene::Topology;
+use crate::shader::{Alpha, Composed, ForwardFeatures, ShaderError, attributes, create_module, forward_module};
+use std::collections::HashMap;
+
+/// The attachments that forward pipelines are made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ForwardTarget {
+    pub format: wgpu::TextureFormat,
+    pub samples: u32,
+}
+
+/// Forward pipelines by what they draw and into what.
+#[derive(Debug, Default)]
+pub struct ForwardPipelines {
+    modules: HashMap<ForwardFeatures, (Composed, wgpu::ShaderModule)>,
+    pipelines: HashMap<(PipelineKey, ForwardTarget), wgpu::RenderPipeline>,
+}
+
+impl ForwardPipelines {
+    /// Makes the pipelines of `plan` that do not exist yet.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        scene: &GpuScene,
+        plan: &FramePlan,
+        target: ForwardTarget,
+    ) -> Result<(), ShaderError> {
+        for key in &plan.pipelines {
+            if self.pipelines.contains_key(&(*key, target)) {
+                continue;
+            }
+            let module = self.module(device, &key.features)?;
+            let pipeline = create_pipeline(device, &module, scene, key, target);
+            self.pipelines.insert((*key, target), pipeline);
+        }
+        Ok(())
+    }
+
+    fn module(
+        &mut self,
+        device: &wgpu::Device,
+        features: &ForwardFeatures,
+    ) -> Result<wgpu::ShaderModule, ShaderError> {
+        let key = features.module_key();
+        if let Some((_, module)) = self.modules.get(&key) {
+            return Ok(module.clone());
+        }
+        let composed = forward_module(&key)?;
+        let module = create_module(device, &format!("forward/{key}"), &composed)?;
+        self.modules.insert(key, (composed, module.clone()));
+        Ok(module)
+    }
+
+    /// Name and text of every module made so far.
+    pub fn sources(&self) -> impl Iterator<Item = (String, &str)> {
+        self.modules.iter().map(|(features, (composed, _))| (format!("forward+{features}"), composed.text.as_str()))
+    }
+
+    fn get(&self, key: PipelineKey, target: ForwardTarget) -> Option<&wgpu::RenderPipeline> {
+        self.pipelines.get(&(key, target))
+    }
+}
+
+/// Records `draws` of a prepared plan. State that two draws in a row share is set once.
+pub fn draw(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipelines: &ForwardPipelines,
+    target: ForwardTarget,
+    scene: &GpuScene,
+    frame_group: &wgpu::BindGroup,
+    plan: &FramePlan,
+    draws: &[Draw],
+) {
+    pass.set_bind_group(0, frame_group, &[]);
+    if scene.indices.size() > 0 {
+        pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+    let (mut bound_pipeline, mut bound_material) = (None, None);
+    for draw in draws {
+        let drawable = &scene.drawables.draws[draw.drawable];
+        let material = (drawable.material, drawable.material_features);
+        let (Some(pipeline), Some(group), Some(primitive)) = (
+            pipelines.get(plan.pipelines[draw.pipeline], target),
+            scene.materials.groups.get(&material),
+            scene.primitives.get(&(drawable.mesh, drawable.primitive)),
+        ) else {
+            continue;
+        };
+        if bound_pipeline.replace(draw.pipeline) != Some(draw.pipeline) {
+            pass.set_pipeline(pipeline);
+        }
+        if bound_material.replace(material) != Some(material) {
+            pass.set_bind_group(1, group, &[]);
+        }
+        for (slot, range) in primitive.attributes.iter().enumerate() {
+            pass.set_vertex_buffer(slot as u32, scene.vertices.slice(range.clone()));
+        }
+        pass.draw_indexed(primitive.indices.clone(), 0, drawable.instances.clone());
+    }
+}
+
+fn create_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    scene: &GpuScene,
+    key: &PipelineKey,
+    target: ForwardTarget,
+) -> wgpu::RenderPipeline {
+    let material_layout = scene.materials.layouts.get(&key.features.material);
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("forward"),
+        bind_group_layouts: &[Some(&scene.frame_layout), material_layout],
+        immediate_size: 0,
+    });
+    let vertex_attributes: Vec<[wgpu::VertexAttribute; 1]> =
+        attributes(&key.features.vertex).iter().enumerate().map(|(location, a)| [vertex_attribute(location, a.wgsl)]).collect();
+    let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> =
+        vertex_attributes.iter().map(|attribute| Some(buffer_layout(attribute))).collect();
+    let blended = key.features.material.alpha == Alpha::Blend;
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(&format!("forward/{}", key.features)),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &buffers,
+        },
+        primitive: primitive_state(key),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: formats::DEPTH,
+            depth_write_enabled: Some(!blended),
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: target.format,
+                blend: blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+fn primitive_state(key: &PipelineKey) -> wgpu::PrimitiveState {
+    wgpu::PrimitiveState {
+        topology: match key.features.topology {
+            Topology::Points => wgpu::PrimitiveTopology::PointList,
+            Topology::Lines => wgpu::PrimitiveTopology::LineList,
+            Topology::Triangles => wgpu::PrimitiveTopology::TriangleList,
+        },
+        front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+        cull_mode: key.cull_back.then_some(wgpu::Face::Back),
+        ..Default::default()
+    }
+}
+
+fn vertex_attribute(location: usize, wgsl: &str) -> wgpu::VertexAttribute {
+    let format = match wgsl {
+        "vec2f" => wgpu::VertexFormat::Float32x2,
+        "vec3f" => wgpu::VertexFormat::Float32x3,
+        _ => wgpu::VertexFormat::Float32x4,
+    };
+    wgpu::VertexAttribute { format, offset: 0, shader_location: location as u32 }
+}
+
+fn buffer_layout(attribute: &[wgpu::VertexAttribute; 1]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: attribute[0].format.size(),
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: attribute,
+    }
+}

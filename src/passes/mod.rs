@@ -1,0 +1,9 @@
+//! The passes of a frame. Each is one function that records into what it is given; none knows another.
+
+mod background;
+mod display;
+mod forward;
+
+pub use background::{BackgroundPass, BackgroundPipeline};
+pub use display::{DisplayPass, DisplayPipelines};
+pub use forward::{ForwardPipelines, ForwardTarget, draw};
