@@ -8,6 +8,7 @@ pub mod gpu_scene;
 pub mod math;
 pub mod passes;
 pub mod progress;
+pub mod reference;
 pub mod renderer;
 pub mod scene;
 pub mod shader;

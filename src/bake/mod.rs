@@ -1,0 +1,3 @@
+//! Tables that the real-time renderer reads, made from the float64 reference.
+
+pub mod dfg;

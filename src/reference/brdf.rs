@@ -1,0 +1,85 @@
+//! The equations of the surface, in the algebra of the papers they come from.
+//!
+//! These are the truth that the shaders are tested against. The shaders use other, numerically stable algebra, so that
+//! a test compares two derivations and not two copies. Cosines are of unit vectors: `NoV` = n.v and so on.
+
+#![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
+
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Alpha of the NDF from what artists set, in [1e-3, 1]: the square (Burley 2012, section 5.4), floored because D and V
+/// of a perfectly smooth surface are a delta function and a pole (docs/model.md).
+pub fn alpha_from_perceptual_roughness(perceptual_roughness: f64) -> f64 {
+    (perceptual_roughness * perceptual_roughness).max(1e-3)
+}
+
+/// Normal distribution of GGX, 1/sr (Trowbridge and Reitz 1975; Walter et al. 2007, equation 33).
+/// `alpha` in (0, 1], `NoH` in [-1, 1]; even in `NoH`.
+pub fn D_GGX(alpha: f64, NoH: f64) -> f64 {
+    let a2 = alpha * alpha;
+    a2 / (PI * (NoH * NoH * (a2 - 1.0) + 1.0).powi(2))
+}
+
+/// Smith's Lambda for GGX (Heitz 2014, equation 72); `NoX` in (0, 1] is the cosine of the direction.
+pub fn Lambda_GGX(alpha: f64, NoX: f64) -> f64 {
+    let tan2 = (1.0 - NoX * NoX).max(0.0) / (NoX * NoX);
+    ((1.0 + alpha * alpha * tan2).sqrt() - 1.0) / 2.0
+}
+
+/// Masking of one direction (Heitz 2014, equation 43), in [0, 1].
+pub fn G1_GGX(alpha: f64, NoX: f64) -> f64 {
+    1.0 / (1.0 + Lambda_GGX(alpha, NoX))
+}
+
+/// Height-correlated masking and shadowing (Heitz 2014, equation 99), in [0, 1].
+pub fn G2_SmithGGXCorrelated(alpha: f64, NoV: f64, NoL: f64) -> f64 {
+    1.0 / (1.0 + Lambda_GGX(alpha, NoV) + Lambda_GGX(alpha, NoL))
+}
+
+/// Visibility, G2 / (4 NoV NoL): all of the Cook-Torrance lobe that is neither D nor F (Heitz 2014, equation 99).
+/// Both cosines in (0, 1].
+pub fn V_SmithGGXCorrelated(alpha: f64, NoV: f64, NoL: f64) -> f64 {
+    G2_SmithGGXCorrelated(alpha, NoV, NoL) / (4.0 * NoV * NoL)
+}
+
+/// Fresnel reflectance (Schlick 1994, equation 15), with `f90` at grazing incidence instead of 1. `VoH` in [0, 1].
+pub fn F_Schlick(f0: DVec3, f90: f64, VoH: f64) -> DVec3 {
+    f0 + (DVec3::splat(f90) - f0) * (1.0 - VoH).powi(5)
+}
+
+/// Cosine-weighted average of [`F_Schlick`] over the hemisphere: int 2 mu (1 - mu)^5 dmu = 1/21.
+pub fn F_Schlick_average(f0: DVec3, f90: f64) -> DVec3 {
+    f0 + (DVec3::splat(f90) - f0) / 21.0
+}
+
+/// Share of the energy lost by single scattering that comes back out (Kulla and Conty 2017, slide 16 of "Revisiting
+/// Physically Based Shading at Imageworks", F_avg E_avg / (1 - F_avg (1 - E_avg)), times F_avg for the first bounce).
+/// `f_avg` from [`F_Schlick_average`]; `E_avg` in (0, 1] is the cosine average of the lobe's albedo with F = 1.
+pub fn F_KullaConty(f_avg: DVec3, E_avg: f64) -> DVec3 {
+    f_avg * f_avg * E_avg / (DVec3::ONE - f_avg * (1.0 - E_avg))
+}
+
+/// Kulla and Conty's multiple-scattering lobe without its Fresnel factor, 1/sr (2017, slide 13):
+/// (1 - E(NoV)) (1 - E(NoL)) / (pi (1 - E_avg)). 0 where nothing is lost, as for a mirror.
+pub fn f_KullaConty(E_v: f64, E_l: f64, E_avg: f64) -> f64 {
+    coupled_cosine_lobe(E_v, E_l, E_avg)
+}
+
+/// Lambert's diffuse lobe of unit albedo, 1/sr.
+pub fn Fd_Lambert() -> f64 {
+    1.0 / PI
+}
+
+/// Lambert's lobe below an interface that reflects `E_s` of the light on either way through (Kelemen and Szirmay-Kalos
+/// 2001, equation 6), 1/sr and of unit albedo: albedo (1 - E_s(NoV)) at every angle. 0 below a perfect mirror.
+pub fn Fd_Coupled(E_s_v: f64, E_s_l: f64, E_s_avg: f64) -> f64 {
+    coupled_cosine_lobe(E_s_v, E_s_l, E_s_avg)
+}
+
+/// The reciprocal lobe whose albedo is 1 - E(v): both models above are this function of what passes.
+fn coupled_cosine_lobe(E_v: f64, E_l: f64, E_avg: f64) -> f64 {
+    let missing = 1.0 - E_avg;
+    // Where less than a table's precision is missing there is nothing to hand out, and 0/0 to be avoided.
+    if missing < 1e-9 { 0.0 } else { Fd_Lambert() * (1.0 - E_v).max(0.0) * (1.0 - E_l).max(0.0) / missing }
+}

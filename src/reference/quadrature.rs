@@ -1,0 +1,85 @@
+//! Gauss-Legendre quadrature: the rule behind every deterministic integral of the reference.
+
+use std::f64::consts::PI;
+
+/// Nodes and weights of the n-point Gauss-Legendre rule on [0, 1].
+#[derive(Debug, Clone)]
+pub struct GaussLegendre {
+    nodes: Vec<(f64, f64)>,
+}
+
+impl GaussLegendre {
+    /// Finds the nodes as roots of the Legendre polynomial P_n by Newton's method from the asymptotic guess
+    /// cos(pi (i + 3/4) / (n + 1/2)) (Abramowitz and Stegun 1964, 22.16.6 and 25.4.29).
+    pub fn new(n: usize) -> Self {
+        let node = |i: usize| {
+            let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+            // Newton converges quadratically from a guess with an error of O(1/n^2): 8 steps are more than enough.
+            for _ in 0..8 {
+                let (p, dp) = legendre(n, x);
+                x -= p / dp;
+            }
+            let (_, dp) = legendre(n, x);
+            // On [-1, 1] the weight is 2 / ((1 - x^2) P'^2); the map to [0, 1] halves it.
+            (0.5 - 0.5 * x, 1.0 / ((1.0 - x * x) * dp * dp))
+        };
+        Self { nodes: (0..n).map(node).collect() }
+    }
+
+    /// Integral of `f` over [a, b].
+    pub fn integrate(&self, a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+        self.nodes_on(a, b).map(|(x, weight)| weight * f(x)).sum()
+    }
+
+    /// The rule's `(node, weight)` pairs, mapped to [a, b].
+    pub fn nodes_on(&self, a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.nodes.iter().map(move |&(x, weight)| (a + (b - a) * x, (b - a) * weight))
+    }
+
+    /// Pairs on [a, b] after the substitution x = a + (b - a) t^3 (10 - 15t + 6t^2), which is flat at both ends: square
+    /// roots there become smooth, and boundary layers get many nodes.
+    pub fn nodes_with_flat_ends(&self, a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> {
+        self.nodes.iter().map(move |&(t, weight)| {
+            let x = t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
+            let dx_dt = 30.0 * (t * (1.0 - t)).powi(2);
+            (a + (b - a) * x, (b - a) * weight * dx_dt)
+        })
+    }
+}
+
+/// P_n(x) and its derivative, by the three-term recurrence.
+fn legendre(n: usize, x: f64) -> (f64, f64) {
+    let (mut previous, mut current) = (1.0, x);
+    for k in 2..=n {
+        let k = k as f64;
+        (previous, current) = (current, ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k);
+    }
+    let n = n as f64;
+    (current, n * (x * current - previous) / (x * x - 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_n_point_rule_is_exact_up_to_degree_2n_minus_1() {
+        for n in [2, 5, 16, 48] {
+            let rule = GaussLegendre::new(n);
+            for degree in 0..2 * n as i32 {
+                let error = rule.integrate(0.0, 1.0, |x| x.powi(degree)) - 1.0 / f64::from(degree + 1);
+                assert!(error.abs() < 1e-14, "n {n}, degree {degree}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn flat_ends_integrate_a_semicircle() {
+        let area: f64 = GaussLegendre::new(24)
+            .nodes_with_flat_ends(0.0, 1.0)
+            .map(|(x, weight)| weight * (x * (1.0 - x)).sqrt())
+            .sum();
+        // Measured below 1e-8 with 24 nodes; without the substitution the same rule is off by 2e-5.
+        assert!((area - PI / 8.0).abs() < 1e-8, "{:e}", area - PI / 8.0);
+    }
+}
