@@ -9,6 +9,7 @@ mod image;
 mod light;
 mod material;
 mod mesh;
+pub mod shapes;
 mod view;
 
 pub use camera::{Camera, Projection};
