@@ -1,7 +1,7 @@
 //! Light from infinitely far away: the panorama and what is made of it for shading.
 
-use crate::math::spaces::equirect_from_direction;
-use glam::{DVec3, Vec3};
+use crate::math::spaces::{equirect_from_direction, octahedral_from_direction};
+use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
 
 /// An equirectangular panorama of radiance, linear Rec.709, cd/m2. Finite and not negative.
@@ -89,4 +89,43 @@ pub struct EnvironmentMaps {
     pub atlas_height: u32,
     /// `atlas_width * atlas_height` texels of radiance, row-major.
     pub texels: Vec<Vec3>,
+}
+
+impl EnvironmentMaps {
+    /// Irradiance / pi, cd/m2, on a surface with the unit normal `n`; slightly negative at worst, opposite to a sun.
+    pub fn irradiance_over_pi(&self, n: DVec3) -> DVec3 {
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = self.irradiance_over_pi;
+        c0 + c1 * n.y
+            + c2 * n.z
+            + c3 * n.x
+            + c4 * (n.x * n.y)
+            + c5 * (n.y * n.z)
+            + c6 * (3.0 * n.z * n.z - 1.0)
+            + c7 * (n.x * n.z)
+            + c8 * (n.x * n.x - n.y * n.y)
+    }
+
+    /// Prefiltered radiance, cd/m2, toward the unit vector `direction`; linear between texels and between levels.
+    pub fn specular(&self, direction: DVec3, perceptual_roughness: f64) -> DVec3 {
+        let last = self.tiles.len() - 1;
+        let level = perceptual_roughness.clamp(0.0, 1.0) * last as f64;
+        let below = (level.floor() as usize).min(last);
+        let above = (below + 1).min(last);
+        let uv = octahedral_from_direction(direction);
+        self.tile_bilinear(below, uv).lerp(self.tile_bilinear(above, uv), level - below as f64)
+    }
+
+    /// Bilinear lookup in one tile; `uv` in [0, 1] spans its interior.
+    fn tile_bilinear(&self, level: usize, uv: DVec2) -> DVec3 {
+        let tile = self.tiles[level];
+        let position = DVec2::from(tile.origin.map(f64::from)) + uv * f64::from(tile.size) - 0.5;
+        let first = position.floor();
+        let fraction = position - first;
+        let start = first.y as usize * self.atlas_width as usize + first.x as usize;
+        let texel = |offset: usize| self.texels[start + offset].as_dvec3();
+        let below = self.atlas_width as usize;
+        let top = texel(0).lerp(texel(1), fraction.x);
+        let bottom = texel(below).lerp(texel(below + 1), fraction.x);
+        top.lerp(bottom, fraction.y)
+    }
 }

@@ -1,0 +1,107 @@
+//! From a panorama to what shading reads of it: prefiltered radiance and irradiance.
+
+use super::harmonics::Harmonics;
+use super::irradiance::irradiance_over_pi;
+use super::lobe::legendre_coefficients;
+use super::octahedral::{Atlas, texel_mean};
+use super::panorama::Panorama;
+use crate::math::spaces::direction_from_octahedral;
+use crate::progress::Progress;
+use crate::scene::{EnvironmentImage, EnvironmentMaps};
+use glam::DVec3;
+
+/// Levels of the specular maps: level k is for perceptual roughness k / 8.
+const LEVELS: usize = 9;
+
+/// Interior sides of the tiles of a large panorama, texels. Level 0 is as sharp as the panorama. The others follow the
+/// lobe, so that bilinear lookup cuts its peak over a sun by 4 % at most at level 1, 1.5 % at level 2 and 1 % above.
+const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 256, 128, 128, 64, 64, 64, 64];
+
+/// No tile has a smaller interior.
+const SMALLEST_SIDE: u32 = 32;
+
+/// Limits of [`bake`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BakeOptions {
+    /// Upper bound for the side of the mirror level, texels; at least 32, rounded down to a power of two.
+    pub max_side: u32,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self { max_side: LARGEST_SIDES[0] }
+    }
+}
+
+/// Prefilters `image` for shading.
+///
+/// Level k of the specular maps holds int L(l) D(h) NoL dl / int D(h) NoL dl with n = v = r and perceptual roughness
+/// k / 8 (Karis 2013); L is [`EnvironmentImage::radiance`]. The convolution is carried out per spherical harmonic, in
+/// float64, and the result is the same on every run. Radiance in cd/m2, as in the image.
+pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Progress) -> EnvironmentMaps {
+    progress.begin("Prefiltering the environment", LEVELS as u64 + 1);
+    let sides = tile_sides(image.width, options);
+    let mut atlas = Atlas::new(&sides);
+    fill_mirror_level(&mut atlas, image);
+    progress.advance(1);
+
+    let harmonics = analyse(image);
+    progress.advance(1);
+    for level in 1..LEVELS {
+        let perceptual_roughness = level as f64 / (LEVELS - 1) as f64;
+        let filtered = convolve(&harmonics, perceptual_roughness * perceptual_roughness);
+        // The sum of harmonics may undershoot by rounding where all is black.
+        let radiance = |direction| filtered.radiance_cubic(direction).max(DVec3::ZERO);
+        atlas.fill(level, |uv| radiance(direction_from_octahedral(uv)));
+        progress.advance(1);
+    }
+    EnvironmentMaps {
+        irradiance_over_pi: irradiance_over_pi(image),
+        tiles: atlas.tiles,
+        atlas_width: atlas.width,
+        atlas_height: atlas.height,
+        texels: atlas.texels,
+    }
+}
+
+/// A mirror tile of half the panorama's width has about its resolution: the octahedron spends its square on the whole
+/// sphere, the panorama half its rows on the poles. Lobes over the texels of a small panorama need finer tiles than that.
+fn tile_sides(panorama_width: u32, options: &BakeOptions) -> [u32; LEVELS] {
+    let limit = options.max_side.clamp(SMALLEST_SIDE, LARGEST_SIDES[0]);
+    let limit = 1 << limit.ilog2();
+    let mirror = (panorama_width / 2).clamp(1, limit).next_power_of_two().clamp(SMALLEST_SIDE, limit);
+    let mut sides = LARGEST_SIDES.map(|side| side.min(2 * mirror));
+    sides[0] = mirror;
+    sides
+}
+
+fn fill_mirror_level(atlas: &mut Atlas, image: &EnvironmentImage) {
+    let size = atlas.tiles[0].size;
+    // The widest texel of the octahedron spans 4.6 / size rad: as many samples as the panorama has texels to one of the
+    // tile leave none out. Panoramas much larger than the tile are averaged first, which is cheaper.
+    let reduced = (image.width > 4 * size).then(|| Panorama::resampled(image, 4 * size as usize, 2 * size as usize));
+    let reduced = reduced.map(EnvironmentImage::from);
+    let image = reduced.as_ref().unwrap_or(image);
+    let samples = image.width.div_ceil(size).max(2);
+    atlas.fill(0, |uv| texel_mean(uv, size, samples, |direction| image.radiance(direction)));
+}
+
+/// The panorama's harmonics, of as many degrees as its texels and the narrowest lobe call for.
+///
+/// Rows are interpolated to eight times their number up to 1024, so that the transform meets the bilinear radiance that
+/// is looked up elsewhere, not a comb of texels. Degree 512 of the lobe of level 1 is scaled by 1e-7.
+fn analyse(image: &EnvironmentImage) -> Harmonics {
+    let rows = (8 * image.height as usize).next_power_of_two().clamp(256, 1024);
+    Harmonics::analyse(&Panorama::resampled(image, 2 * rows, rows), rows / 2)
+}
+
+/// The panorama seen through the lobe of `alpha`.
+fn convolve(harmonics: &Harmonics, alpha: f64) -> Panorama {
+    // The coefficients of the lobe fall as e^(-2 alpha l) at first, later only as fast as the lobe's kink at the horizon
+    // lets them.
+    let degrees = ((8.0 / alpha) as usize).next_power_of_two().clamp(128, harmonics.degrees());
+    harmonics.synthesise(&legendre_coefficients(alpha, degrees), 2 * degrees)
+}
+
+#[cfg(test)]
+mod tests;
