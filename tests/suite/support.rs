@@ -12,12 +12,12 @@ use specula::scene::{
 };
 
 /// A device for a test; every test opens its own, so that an error belongs to it.
-pub fn gpu(precision: Precision) -> Gpu {
+pub(crate) fn gpu(precision: Precision) -> Gpu {
     Gpu::open(&GpuRequest::default(), GpuOptions { precision }).expect("tests need a Vulkan driver: scripts/setup.sh")
 }
 
 /// A unit sphere about the origin.
-pub fn sphere_scene(material: Material) -> Scene {
+pub(crate) fn sphere_scene(material: Material) -> Scene {
     Scene {
         nodes: vec![Node { parent_from_node: DMat4::IDENTITY, mesh: Some(0), ..Default::default() }],
         roots: vec![0],
@@ -28,7 +28,7 @@ pub fn sphere_scene(material: Material) -> Scene {
 }
 
 /// Adds a light at a place.
-pub fn add_light(scene: &mut Scene, kind: LightKind, intensity: f64, position: DVec3) {
+pub(crate) fn add_light(scene: &mut Scene, kind: LightKind, intensity: f64, position: DVec3) {
     scene.roots.push(scene.nodes.len());
     scene.nodes.push(Node {
         parent_from_node: DMat4::from_translation(position),
@@ -39,7 +39,7 @@ pub fn add_light(scene: &mut Scene, kind: LightKind, intensity: f64, position: D
 }
 
 /// Looks at the origin from +Z.
-pub fn front_view(side_px: u32) -> View {
+pub(crate) fn front_view(side_px: u32) -> View {
     let projection = Projection::Perspective { fov_y_rad: 0.6 };
     View {
         camera: Camera::look_at(DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, DVec3::Y, projection, 0.1, 100.0),
@@ -51,12 +51,12 @@ pub fn front_view(side_px: u32) -> View {
     }
 }
 
-pub fn white_environment() -> Environment {
+pub(crate) fn white_environment() -> Environment {
     Environment::new(specula::scene::EnvironmentImage::constant(Vec3::ONE))
 }
 
 /// Uploads, draws and reads back; fails on any message of the driver or of wgpu.
-pub fn draw(gpu: &Gpu, scene: &Scene, view: &View, options: CaptureOptions) -> CapturedFrame {
+pub(crate) fn draw(gpu: &Gpu, scene: &Scene, view: &View, options: CaptureOptions) -> CapturedFrame {
     let maps = scene.environment.as_ref().map(|e| environment::bake(&e.image, &Default::default(), &Silent));
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue);
     let mut uploaded = renderer.upload(&gpu.device, &gpu.queue, scene, maps.as_ref()).unwrap();
