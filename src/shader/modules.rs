@@ -2,11 +2,12 @@
 
 use super::compose::{Composed, ShaderError, Slot, Slots, compose};
 use super::features::{Alpha, ForwardFeatures, Shading};
+use super::sources::ShaderSources;
 use super::{interface, types};
 use crate::scene::{TextureSlot, ToneMap};
 
 /// The forward pass of one kind of draw.
-pub fn forward_module(features: &ForwardFeatures) -> Result<Composed, ShaderError> {
+pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
     let choose = |on: bool, with: &'static str, without: &'static str| Slot::File(if on { with } else { without });
     let ForwardFeatures { scene, material, vertex, energy_compensation, .. } = features;
     let normal_mapped = material.texture(TextureSlot::Normal).is_some();
@@ -53,12 +54,12 @@ pub fn forward_module(features: &ForwardFeatures) -> Result<Composed, ShaderErro
             }),
         ),
     ]);
-    compose("pass/forward.wgsl", &slots)
+    compose(sources, "pass/forward.wgsl", &slots)
 }
 
 /// The panorama behind the scene.
-pub fn background_module() -> Result<Composed, ShaderError> {
-    compose("pass/background.wgsl", &Slots::from([("types", Slot::Text(types::wgsl()))]))
+pub fn background_module(sources: &ShaderSources) -> Result<Composed, ShaderError> {
+    compose(sources, "pass/background.wgsl", &Slots::from([("types", Slot::Text(types::wgsl()))]))
 }
 
 /// What chooses the display shader.
@@ -70,7 +71,7 @@ pub struct DisplayFeatures {
 }
 
 /// Scene radiance to display values.
-pub fn display_module(features: DisplayFeatures) -> Result<Composed, ShaderError> {
+pub fn display_module(sources: &ShaderSources, features: DisplayFeatures) -> Result<Composed, ShaderError> {
     let tone_map = match features.tone_map {
         ToneMap::Neutral => "color/tone_map_neutral.wgsl",
         ToneMap::Aces => "color/tone_map_aces.wgsl",
@@ -84,7 +85,7 @@ pub fn display_module(features: DisplayFeatures) -> Result<Composed, ShaderError
         ("tone_map", Slot::File(tone_map)),
         ("encode", Slot::File(encode)),
     ]);
-    compose("pass/display.wgsl", &slots)
+    compose(sources, "pass/display.wgsl", &slots)
 }
 
 #[cfg(test)]
@@ -122,6 +123,7 @@ mod tests {
             indices: vec![0, 1, 2],
             material: 0,
         };
+        let sources = ShaderSources::default();
         let mut modules = 0;
         for slots in 0..1 << TextureSlot::ALL.len() {
             let mut material = Material { metallic: 0.5, emissive_nits: Vec3::ONE, ..Default::default() };
@@ -148,7 +150,7 @@ mod tests {
                     energy_compensation: slots % 5 != 0,
                     topology: Topology::Triangles,
                 };
-                let composed = forward_module(&features).unwrap();
+                let composed = forward_module(&sources, &features).unwrap();
                 validate(&composed);
                 let sampled = composed.text.matches("textureSample(").count();
                 assert_eq!(sampled, features.material.textures().count(), "{features}");
@@ -160,12 +162,13 @@ mod tests {
 
     #[test]
     fn the_other_passes_validate() {
-        validate(&background_module().unwrap());
+        let sources = ShaderSources::default();
+        validate(&background_module(&sources).unwrap());
         for tone_map in
             [ToneMap::Neutral, ToneMap::Aces, ToneMap::AgX, ToneMap::Reinhard, ToneMap::Linear, ToneMap::None]
         {
             for encode_srgb in [true, false] {
-                validate(&display_module(DisplayFeatures { tone_map, encode_srgb }).unwrap());
+                validate(&display_module(&sources, DisplayFeatures { tone_map, encode_srgb }).unwrap());
             }
         }
     }
