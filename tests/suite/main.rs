@@ -1,5 +1,6 @@
 //! One test binary for all that needs the whole crate: each test binary links wgpu.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod frames;
 mod support;
+mod twins;
