@@ -1,4 +1,4 @@
-//! The table: every WGSL function of `shaders/{brdf,lobe,light,color,math}` with its grid, its float64 twin and its bound.
+//! The table: every WGSL function of `shaders/{brdf,lobe,light,color,math}` with its grid, its twin and its bound.
 //!
 //! Twins are in the algebra of the papers; arguments that a shader clamps are clamped here to the stated domain.
 //! Limits of closed forms are a few roundings, eps each. Limits of the curves of a display are measured on llvmpipe
