@@ -3,5 +3,6 @@
 
 mod frames;
 mod lit_plane;
+mod mutants;
 mod support;
 mod twins;
