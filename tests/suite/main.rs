@@ -4,5 +4,6 @@
 mod frames;
 mod lit_plane;
 mod mutants;
+mod shaders;
 mod support;
 mod twins;
