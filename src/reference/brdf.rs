@@ -130,8 +130,8 @@ mod tests {
                 worst = worst.max((area - 1.0).abs());
             }
         }
-        // Measured 0: the bend at a = b. Margin 3.
-        assert!(worst < 0.0, "{worst:e}");
+        // Measured 7.1e-6, from the bend at a = b. Margin 2.
+        assert!(worst < 1.5e-5, "{worst:e}");
     }
 
     #[test]

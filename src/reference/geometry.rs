@@ -161,7 +161,8 @@ fn place(primitive: &Primitive, instance: &Instance, view: &View, draw: usize, t
     for shape in primitive.indices.chunks_exact(primitive.topology.indices_per_shape()) {
         match *shape {
             [a, b, c] => {
-                triangles.push(Triangle { corners: [world(a), world(b), world(c)], vertices: [a, b, c], draw })
+                let corners = [world(a), world(b), world(c)];
+                triangles.push(Triangle { corners, vertices: [a, b, c], draw });
             }
             [a, b] => triangles.extend(strokes::line(view, draw, [(world(a), a), (world(b), b)])),
             [a] => triangles.extend(strokes::point(view, draw, (world(a), a))),

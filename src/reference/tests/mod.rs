@@ -1,6 +1,7 @@
-//! What the reference's tests share, and tests of whole pictures with a known answer.
+//! What the reference's tests share: small scenes, and a chi-square test for samplers.
 
-use super::quadrature::GaussLegendre;
+mod pictures;
+
 use super::sampling::PixelSampler;
 use super::*;
 use crate::math::spaces::direction_from_equirect;
@@ -10,7 +11,7 @@ use glam::{DMat4, DVec2, DVec3, UVec2, Vec2, Vec3, Vec4};
 use std::f64::consts::{PI, TAU};
 
 /// A camera at (0, 0, 4) that looks at the origin through 64 x 64 pixels; nothing behind the scene.
-pub(super) fn view() -> View {
+pub(in crate::reference) fn view() -> View {
     let projection = Projection::Perspective { fov_y_rad: 0.6 };
     View {
         camera: Camera::look_at(DVec3::Z * 4.0, DVec3::ZERO, DVec3::Y, projection, 0.1, 100.0),
@@ -23,16 +24,20 @@ pub(super) fn view() -> View {
 }
 
 /// A unit sphere of `rings` by `2 rings` quads with smooth normals, and tangents toward +u.
-pub(super) fn sphere(rings: u32) -> Primitive {
+pub(in crate::reference) fn sphere(rings: u32) -> Primitive {
     let (mut positions, mut normals, mut tangents, mut uvs) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let columns = 2 * rings;
     for row in 0..=rings {
         for column in 0..=columns {
             let uv = DVec2::new(f64::from(column) / f64::from(columns), f64::from(row) / f64::from(rings));
             // Mirrored, so that u runs to the right as seen from outside.
-            // The last column repeats the first to the bit: a closed surface.
+            // The last column repeats the first, and the poles themselves, to the bit: a closed surface.
             let turn = f64::from(column % columns) / f64::from(columns);
-            let normal = direction_from_equirect(DVec2::new(1.0 - turn, uv.y));
+            let normal = match row {
+                0 => DVec3::Y,
+                _ if row == rings => DVec3::NEG_Y,
+                _ => direction_from_equirect(DVec2::new(1.0 - turn, uv.y)),
+            };
             let ahead = direction_from_equirect(DVec2::new(0.75 - turn, 0.5));
             positions.push(normal.as_vec3());
             normals.push(normal.as_vec3());
@@ -61,7 +66,7 @@ pub(super) fn sphere(rings: u32) -> Primitive {
 }
 
 /// A square of side 2 in the plane z = `z` that faces +Z.
-fn square(z: f32, material: usize) -> Primitive {
+pub(in crate::reference) fn square(z: f32, material: usize) -> Primitive {
     Primitive {
         topology: Topology::Triangles,
         positions: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, z)).to_vec(),
@@ -75,7 +80,7 @@ fn square(z: f32, material: usize) -> Primitive {
 }
 
 /// One mesh of one primitive, at the origin.
-pub(super) fn scene_of(primitive: Primitive, material: Material) -> Scene {
+pub(in crate::reference) fn scene_of(primitive: Primitive, material: Material) -> Scene {
     Scene {
         nodes: vec![Node { mesh: Some(0), parent_from_node: DMat4::IDENTITY, ..Node::default() }],
         roots: vec![0],
@@ -85,7 +90,7 @@ pub(super) fn scene_of(primitive: Primitive, material: Material) -> Scene {
     }
 }
 
-fn add_light(scene: &mut Scene, kind: LightKind, intensity: f64, place: DVec3) {
+pub(in crate::reference) fn add_light(scene: &mut Scene, kind: LightKind, intensity: f64, place: DVec3) {
     scene.lights.push(Light { name: None, kind, color: DVec3::ONE, intensity });
     let node = Node {
         light: Some(scene.lights.len() - 1),
@@ -96,30 +101,33 @@ fn add_light(scene: &mut Scene, kind: LightKind, intensity: f64, place: DVec3) {
     scene.nodes.push(node);
 }
 
-fn options(samples: u32) -> ReferenceOptions<'static> {
+pub(in crate::reference) fn options(samples: u32) -> ReferenceOptions<'static> {
     ReferenceOptions { samples, seed: 1, progress: &Silent }
 }
 
-fn texel(image: &RadianceImage, x: u32, y: u32) -> glam::DVec4 {
+pub(in crate::reference) fn texel(image: &RadianceImage, x: u32, y: u32) -> glam::DVec4 {
     image.texels[(y * image.width + x) as usize].as_dvec4()
 }
 
 /// Pearson's statistic of a sampler against its density.
 #[derive(Debug)]
-pub(super) struct ChiSquare {
+pub(in crate::reference) struct ChiSquare {
     statistic: f64,
     degrees: f64,
 }
 
 impl ChiSquare {
     /// Within five standard deviations of its mean. A chi-square of k degrees has mean k and variance 2k.
-    pub(super) fn is_plausible(&self) -> bool {
+    pub(in crate::reference) fn is_plausible(&self) -> bool {
         self.statistic < self.degrees + 5.0 * (2.0 * self.degrees).sqrt()
     }
 }
 
 /// Draws 100 000 directions and compares their histogram over 16 x 32 cells of equal solid angle with the density.
-pub(super) fn chi_square_of_directions(sample: impl Fn(DVec2) -> DVec3, pdf: impl Fn(DVec3) -> f64) -> ChiSquare {
+pub(in crate::reference) fn chi_square_of_directions(
+    sample: impl Fn(DVec2) -> DVec3,
+    pdf: impl Fn(DVec3) -> f64,
+) -> ChiSquare {
     const ROWS: usize = 16;
     const COLUMNS: usize = 32;
     const SAMPLES: u32 = 100_000;
