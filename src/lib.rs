@@ -2,6 +2,8 @@
 
 pub mod bake;
 pub mod capture;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod frame;
 pub mod gpu;
 pub mod gpu_scene;

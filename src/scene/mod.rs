@@ -5,6 +5,7 @@
 
 mod camera;
 mod environment;
+pub mod framing;
 mod image;
 mod light;
 mod material;
