@@ -83,3 +83,76 @@ fn coupled_cosine_lobe(E_v: f64, E_l: f64, E_avg: f64) -> f64 {
     // Where less than a table's precision is missing there is nothing to hand out, and 0/0 to be avoided.
     if missing < 1e-9 { 0.0 } else { Fd_Lambert() * (1.0 - E_v).max(0.0) * (1.0 - E_l).max(0.0) / missing }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadrature::GaussLegendre;
+    use super::*;
+
+    /// int over the hemisphere of facets, with tan(theta) = alpha tan(psi): `f(NoH, sin)` averaged over azimuth.
+    fn over_facets(alpha: f64, mut f: impl FnMut(f64, f64) -> f64) -> f64 {
+        GaussLegendre::new(96)
+            .nodes_with_flat_ends(0.0, PI / 2.0)
+            .map(|(psi, weight)| {
+                let tan = alpha * psi.tan();
+                let NoH = 1.0 / (1.0 + tan * tan).sqrt();
+                let dtheta_dpsi = alpha / psi.cos().powi(2) * NoH * NoH;
+                2.0 * PI * weight * dtheta_dpsi * tan * NoH * D_GGX(alpha, NoH) * f(NoH, tan * NoH)
+            })
+            .sum()
+    }
+
+    #[test]
+    fn facets_project_onto_the_surface_they_make_up() {
+        for alpha in [1e-3, 0.01, 0.1, 0.5, 1.0] {
+            let area = over_facets(alpha, |NoH, _| NoH);
+            // Walter et al. 2007, equation 4.
+            assert!((area - 1.0).abs() < 1e-8, "alpha {alpha}: {area}");
+        }
+    }
+
+    #[test]
+    fn visible_facets_project_onto_the_surface_seen() {
+        // int G1 <v.h> D dh = NoV (Heitz 2014, equation 15). The azimuth average of <v.h> is in closed form.
+        let mut worst: f64 = 0.0;
+        for alpha in [1e-3, 0.1, 0.5, 1.0] {
+            for NoV in [0.05_f64, 0.4, 0.9] {
+                let sin_v = (1.0 - NoV * NoV).sqrt();
+                let projected = over_facets(alpha, |NoH, sin| {
+                    let (a, b) = (NoV * NoH, sin_v * sin);
+                    if a >= b {
+                        return a;
+                    }
+                    let last = (-a / b).acos();
+                    (a * last + b * last.sin()) / PI
+                });
+                let area = projected * G1_GGX(alpha, NoV) / NoV;
+                worst = worst.max((area - 1.0).abs());
+            }
+        }
+        // Measured 7.1e-6, from the bend at a = b. Margin 2.
+        assert!(worst < 1.5e-5, "{worst:e}");
+    }
+
+    #[test]
+    fn masking_and_shadowing_are_bounded_and_symmetric() {
+        for alpha in [1e-3, 0.2, 1.0] {
+            for (NoV, NoL) in [(0.01, 0.9), (0.3, 0.3), (1.0, 1.0)] {
+                let G2 = G2_SmithGGXCorrelated(alpha, NoV, NoL);
+                let (G1_v, G1_l) = (G1_GGX(alpha, NoV), G1_GGX(alpha, NoL));
+                assert!(G2 <= G1_v.min(G1_l) && G2 >= G1_v * G1_l, "alpha {alpha}, NoV {NoV}, NoL {NoL}: {G2}");
+                let exchanged = G2_SmithGGXCorrelated(alpha, NoL, NoV);
+                assert!((G2 - exchanged).abs() < 1e-14, "alpha {alpha}, NoV {NoV}, NoL {NoL}: {G2} and {exchanged}");
+            }
+        }
+    }
+
+    #[test]
+    fn schlicks_average_is_the_average_of_schlick() {
+        let (f0, f90) = (DVec3::new(0.04, 0.5, 1.0), 0.9);
+        let average = GaussLegendre::new(8)
+            .nodes_on(0.0, 1.0)
+            .fold(DVec3::ZERO, |sum, (mu, weight)| sum + F_Schlick(f0, f90, mu) * (2.0 * weight * mu));
+        assert!((average - F_Schlick_average(f0, f90)).length() < 1e-12, "{average}");
+    }
+}

@@ -1,5 +1,23 @@
 //! The truth: every formula in float64, and a CPU renderer made of them.
+//!
+//! Formulas are in the algebra of the papers; the shaders have other, numerically stable algebra for the same functions
+//! and are tested against these. [`render()`] takes the same scene and view as the real-time renderer.
 
 pub mod albedo;
 pub mod brdf;
+pub mod bsdf;
+pub mod color;
+pub mod environment;
+pub mod geometry;
+pub mod integrator;
+pub mod lights;
 pub mod quadrature;
+mod render;
+pub mod sampling;
+mod strokes;
+pub mod surface;
+#[cfg(test)]
+mod tests;
+pub mod texture;
+
+pub use render::{ReferenceOptions, render};

