@@ -7,6 +7,7 @@ pub mod cli;
 pub mod frame;
 pub mod gpu;
 pub mod gpu_scene;
+pub mod import;
 pub mod math;
 pub mod passes;
 pub mod progress;

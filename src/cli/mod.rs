@@ -10,7 +10,6 @@ mod render;
 mod stats;
 
 use clap::{Parser, Subcommand};
-use error::CliError;
 use std::process::ExitCode;
 
 /// Real-time, physically based glTF renderer: measurably accurate, and a scene pays only for what it uses.

@@ -3,7 +3,7 @@
 use super::error::CliError;
 use crate::gpu::formats::Precision;
 use crate::scene::RadianceImage;
-use exr::prelude::{Encoding, Image, SpecificChannels, Text, Vec2, WritableImage};
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Text, WritableImage};
 use half::f16;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -49,27 +49,20 @@ pub(super) fn png(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, Strin
 
 /// OpenEXR with R, G, B and A, as half floats or as float32.
 pub(super) fn exr(image: &RadianceImage, precision: Precision) -> Result<Vec<u8>, String> {
+    let channel = |(index, name): (usize, &str)| {
+        let values = image.texels.iter().map(|texel| texel[index]);
+        let samples = match precision {
+            Precision::Float => FlatSamples::F32(values.collect()),
+            Precision::Half => FlatSamples::F16(values.map(f16::from_f32).collect()),
+        };
+        AnyChannel::new(name, samples)
+    };
+    let channels = AnyChannels::sort(["R", "G", "B", "A"].into_iter().enumerate().map(channel).collect());
     let size = (image.width as usize, image.height as usize);
-    let texel = |position: Vec2<usize>| image.texels[position.y() * size.0 + position.x()].to_array();
-    match precision {
-        Precision::Float => {
-            encode_exr(size, SpecificChannels::rgba(|at: Vec2<usize>| <(f32, f32, f32, f32)>::from(texel(at))))
-        }
-        Precision::Half => encode_exr(
-            size,
-            SpecificChannels::rgba(|at: Vec2<usize>| <(f16, f16, f16, f16)>::from(texel(at).map(f16::from_f32))),
-        ),
-    }
-}
-
-fn encode_exr<Channels>(size: (usize, usize), channels: Channels) -> Result<Vec<u8>, String>
-where
-    Channels: for<'slf> exr::prelude::WritableChannels<'slf>,
-{
-    let mut image = Image::from_encoded_channels(size, Encoding::FAST_LOSSLESS, channels);
-    image.layer_data.attributes.software_name = Some(Text::from("specula"));
+    let mut file = Image::from_encoded_channels(size, Encoding::FAST_LOSSLESS, channels);
+    file.layer_data.attributes.software_name = Some(Text::from("specula"));
     let mut bytes = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut bytes).map_err(|error| error.to_string())?;
+    file.write().to_buffered(&mut bytes).map_err(|error| error.to_string())?;
     Ok(bytes.into_inner())
 }
 
@@ -105,6 +98,7 @@ fn new_file_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use exr::prelude::{ReadChannels, ReadLayers};
     use glam::Vec4;
 
     #[test]

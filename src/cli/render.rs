@@ -392,7 +392,7 @@ fn trace(
     format: Format,
     (progress, watch): (&dyn Progress, &mut Stopwatch),
 ) -> Rendered {
-    let options = ReferenceOptions { samples: args.driver.samples.max(1), progress, ..Default::default() };
+    let options = ReferenceOptions { samples: args.driver.samples.max(1), seed: 0, progress };
     let radiance = watch.time("reference render", || render_reference(scene, view, &options));
     let picture = match format {
         Format::Png => Picture::Display(to_srgb8(&radiance, view)),
