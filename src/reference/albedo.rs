@@ -215,7 +215,7 @@ mod tests {
     fn albedos_match_closed_forms_and_an_independent_integrator() {
         // At alpha = 1 and normal incidence D and G2 are elementary: E = 1 - ln 2.
         assert!((dfg(1.0, 1.0).albedo() - (1.0 - 2.0_f64.ln())).abs() < 1e-6);
-        // Uniform sampling of an earlier prototype in another language, printed to four digits.
+        // The figures of an independent prototype, to the four digits printed.
         let anchors = [
             (1.0, 0.01, 0.9538),
             (1.0, 0.5, 0.4507),
