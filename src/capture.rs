@@ -158,7 +158,10 @@ impl PendingFrame {
             }
         };
         let (width, height) = (self.width, self.height);
-        Ok(CapturedFrame { radiance: radiance.map(|bytes| RadianceImage { width, height, texels: texels(bytes) }), display })
+        Ok(CapturedFrame {
+            radiance: radiance.map(|bytes| RadianceImage { width, height, texels: texels(bytes) }),
+            display,
+        })
     }
 }
 

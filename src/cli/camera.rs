@@ -160,9 +160,11 @@ impl CameraArgs {
         let by_name = || cameras.iter().find(|camera| camera.name.as_deref() == Some(self.camera.as_str()));
         by_number.or_else(by_name).cloned().ok_or_else(|| {
             let names = cameras.iter().enumerate();
-            let names: Vec<String> =
-                names.map(|(index, camera)| format!("{index} ({})", camera.name.as_deref().unwrap_or("unnamed"))).collect();
-            let found = if names.is_empty() { "the file has none".into() } else { format!("it has {}", names.join(", ")) };
+            let names: Vec<String> = names
+                .map(|(index, camera)| format!("{index} ({})", camera.name.as_deref().unwrap_or("unnamed")))
+                .collect();
+            let found =
+                if names.is_empty() { "the file has none".into() } else { format!("it has {}", names.join(", ")) };
             CliError::Usage(format!("--camera {}: no such camera in the file; {found}; or use auto", self.camera))
         })
     }

@@ -30,7 +30,9 @@ impl EnvironmentArgs {
     /// The environment, without the cost of one that is black.
     pub(super) fn load(&self) -> Result<Option<Environment>, CliError> {
         if !(self.env_rotation.is_finite() && self.env_intensity.is_finite() && self.env_intensity >= 0.0) {
-            return Err(CliError::Usage("--env-rotation and --env-intensity take finite numbers, the latter from 0 up".into()));
+            return Err(CliError::Usage(
+                "--env-rotation and --env-intensity take finite numbers, the latter from 0 up".into(),
+            ));
         }
         let image = match self.env.as_str() {
             "black" => return Ok(None),

@@ -27,7 +27,10 @@ impl Format {
             Some("png") => Ok(Self::Png),
             Some("exr") => Ok(Self::Exr),
             _ if path == Path::new("-") => Ok(Self::Png),
-            _ => Err(CliError::Usage(format!("{}: unknown kind of picture; end the name in .png or .exr", path.display()))),
+            _ => Err(CliError::Usage(format!(
+                "{}: unknown kind of picture; end the name in .png or .exr",
+                path.display()
+            ))),
         }
     }
 }

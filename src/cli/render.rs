@@ -294,11 +294,7 @@ impl RenderArgs {
 }
 
 /// The device, or `None` with a warning when the reference renderer has to do.
-fn open_gpu(
-    args: &DriverArgs,
-    wanted: RendererArg,
-    warnings: &mut Vec<String>,
-) -> Result<Option<Gpu>, CliError> {
+fn open_gpu(args: &DriverArgs, wanted: RendererArg, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
     let backends = args.backend.map(|backend| match backend {
         BackendArg::Vulkan => crate::wgpu::Backends::VULKAN,
         BackendArg::Gl => crate::wgpu::Backends::GL,

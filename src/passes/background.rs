@@ -67,11 +67,7 @@ impl BackgroundPipeline {
         Ok(BackgroundPass { group, pipeline })
     }
 
-    fn pipeline(
-        &mut self,
-        device: &wgpu::Device,
-        target: ForwardTarget,
-    ) -> Result<wgpu::RenderPipeline, ShaderError> {
+    fn pipeline(&mut self, device: &wgpu::Device, target: ForwardTarget) -> Result<wgpu::RenderPipeline, ShaderError> {
         if let Some(pipeline) = self.pipelines.get(&target) {
             return Ok(pipeline.clone());
         }

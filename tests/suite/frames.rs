@@ -26,7 +26,12 @@ fn a_white_furnace_returns_all_light() {
 #[test]
 fn dump() {
     let gpu = gpu(Precision::Half);
-    let mut scene = sphere_scene(Material { metallic: 0.0, perceptual_roughness: 0.3, base_color: Vec4::new(0.8,0.2,0.1,1.0), ..Default::default() });
+    let mut scene = sphere_scene(Material {
+        metallic: 0.0,
+        perceptual_roughness: 0.3,
+        base_color: Vec4::new(0.8, 0.2, 0.1, 1.0),
+        ..Default::default()
+    });
     add_light(&mut scene, LightKind::Point { range_m: None }, 30.0, DVec3::new(2.0, 2.0, 3.0));
     let frame = draw(&gpu, &scene, &front_view(256), CaptureOptions::default());
     image::save_buffer("/tmp/dump.png", &frame.display.unwrap(), 256, 256, image::ColorType::Rgba8).unwrap();
