@@ -15,6 +15,10 @@ pub(crate) struct Vertex {
 pub(crate) struct Mesh {
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) triangles: Vec<[u16; 3]>,
+    /// One a vertex, or none.
+    pub(crate) uvs: Vec<DVec2>,
+    /// One a vertex, or none: linear, in [0, 1].
+    pub(crate) colors: Vec<DVec3>,
 }
 
 impl Mesh {
@@ -114,8 +118,12 @@ pub(crate) fn trefoil(size: f64) -> impl Fn(f64) -> DVec3 {
     }
 }
 
+/// Where along a step's share of v its profile has points: foot, three points of the edge, inner end of the top.
+pub(crate) const STEP_PROFILE: [f64; 5] = [0.02, 0.22, 0.25, 0.28, 0.98];
+
 /// Round steps about the Y axis, each `(radius, height of its top)`, from the lowest to the highest; edges are rounded
-/// with radius `bevel`.
+/// with radius `bevel`. Texture coordinates: u runs around, v from 0 at the foot of the lowest step to 1 in the middle;
+/// each step has the same share of it, see [`STEP_PROFILE`].
 pub(crate) fn round_steps(steps: &[DVec2], bevel: f64, around: u16) -> Mesh {
     let mut mesh = Mesh::default();
     for (i, step) in steps.iter().enumerate() {
@@ -139,9 +147,13 @@ pub(crate) fn round_steps(steps: &[DVec2], bevel: f64, around: u16) -> Mesh {
             let turn = |p: DVec2| DVec3::new(p.x * sin, p.y, p.x * cos);
             Vertex { position: turn(point), normal: turn(normal) }
         });
+        for v in STEP_PROFILE {
+            let v = (i as f64 + v) / steps.len() as f64;
+            mesh.uvs.extend((0..=around).map(|column| DVec2::new(f64::from(column) / f64::from(around), v)));
+        }
     }
     // The innermost row of the highest step is one point: half of its triangles have no area.
-    let Mesh { vertices, triangles } = &mut mesh;
+    let Mesh { vertices, triangles, .. } = &mut mesh;
     let place = |i: u16| vertices[i as usize].position;
     triangles.retain(|t| (place(t[1]) - place(t[0])).cross(place(t[2]) - place(t[0])).length() > 1e-12);
     mesh
@@ -172,13 +184,15 @@ pub(crate) fn backdrop(width: f64, front_z: f64, wall_z: f64, bend: f64, wall_he
     mesh
 }
 
-/// A rectangle that faces +Z, `half_size` along X and Y.
-pub(crate) fn rectangle(half_size: DVec2) -> Mesh {
+/// A rectangle that faces +Z, `half_size` along X and Y; texture coordinates are `repeats` along its width.
+pub(crate) fn rectangle(half_size: DVec2, repeats: f64) -> Mesh {
     let mut mesh = Mesh::default();
     mesh.add_grid(1, 1, |column, row| {
         let corner = DVec2::new(f64::from(column), f64::from(row)) * 2.0 - 1.0;
         Vertex { position: (corner * half_size).extend(0.0), normal: DVec3::Z }
     });
+    let uv = |p: DVec3| DVec2::new(half_size.x + p.x, half_size.y - p.y) / (2.0 * half_size.x) * repeats;
+    mesh.uvs = mesh.vertices.iter().map(|vertex| uv(vertex.position)).collect();
     mesh
 }
 
@@ -195,7 +209,7 @@ mod tests {
             ("ring", closed_tube(circle(1.0), 0.1, 24, 8)),
             ("steps", round_steps(&[DVec2::new(1.0, 0.2), DVec2::new(0.5, 0.4)], 0.02, 24)),
             ("backdrop", backdrop(4.0, 3.0, -2.0, 1.0, 3.0)),
-            ("rectangle", rectangle(DVec2::ONE)),
+            ("rectangle", rectangle(DVec2::ONE, 2.0)),
         ];
         for (name, mesh) in &shapes {
             let mut volume = 0.0;

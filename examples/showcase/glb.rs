@@ -1,7 +1,7 @@
 //! A minimal writer of binary glTF: appends data, hands out indices, joins JSON and bytes.
 
 use super::geometry::Mesh;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use serde_json::{Value, json};
 
 const FLOAT: u32 = 5126;
@@ -24,30 +24,23 @@ pub(crate) struct Glb {
     nodes: Vec<Value>,
 }
 
-/// What a vertex may carry beside position and normal.
-#[derive(Default)]
-pub(crate) struct Extras {
-    pub(crate) uvs: Option<Vec<DVec2>>,
-    /// Linear, in [0, 1].
-    pub(crate) colors: Option<Vec<DVec3>>,
-}
-
 impl Glb {
     /// The attributes and indices of a primitive, to be used with any number of materials.
-    pub(crate) fn geometry(&mut self, mesh: &Mesh, extras: &Extras) -> Value {
+    pub(crate) fn geometry(&mut self, mesh: &Mesh) -> Value {
         let positions: Vec<DVec3> = mesh.vertices.iter().map(|vertex| vertex.position).collect();
         let normals: Vec<DVec3> = mesh.vertices.iter().map(|vertex| vertex.normal).collect();
         let position = self.vectors(&positions);
         let normal = if positions == normals { position } else { self.vectors(&normals) };
         let mut attributes = json!({ "POSITION": position, "NORMAL": normal });
-        if let Some(uvs) = &extras.uvs {
-            let floats: Vec<u8> = uvs.iter().flat_map(|uv| uv.to_array()).flat_map(float_bytes).collect();
-            attributes["TEXCOORD_0"] = self.accessor(&floats, ARRAY_BUFFER, FLOAT, "VEC2", uvs.len()).into();
+        if !mesh.uvs.is_empty() {
+            let floats: Vec<u8> = mesh.uvs.iter().flat_map(|uv| uv.to_array()).flat_map(float_bytes).collect();
+            attributes["TEXCOORD_0"] = self.accessor(&floats, ARRAY_BUFFER, FLOAT, "VEC2", mesh.uvs.len()).into();
         }
-        if let Some(colors) = &extras.colors {
+        if !mesh.colors.is_empty() {
             let channel = |value: f64| (value * 255.0).round() as u8;
-            let bytes: Vec<u8> = colors.iter().flat_map(|c| [channel(c.x), channel(c.y), channel(c.z), 255]).collect();
-            let accessor = self.accessor(&bytes, ARRAY_BUFFER, UNSIGNED_BYTE, "VEC4", colors.len());
+            let bytes: Vec<u8> =
+                mesh.colors.iter().flat_map(|c| [channel(c.x), channel(c.y), channel(c.z), 255]).collect();
+            let accessor = self.accessor(&bytes, ARRAY_BUFFER, UNSIGNED_BYTE, "VEC4", mesh.colors.len());
             self.accessors[accessor]["normalized"] = true.into();
             attributes["COLOR_0"] = accessor.into();
         }

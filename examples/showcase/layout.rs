@@ -1,8 +1,9 @@
 //! Where things stand in the showcase, and how much sky they take from the floor. Metres, +Y up, front toward +Z.
 
-use super::geometry::trefoil;
+use super::geometry::{STEP_PROFILE, trefoil};
 use super::materials::ROUGHNESS_STEPS;
 use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
 
 /// The round steps in the middle: axis through (x, z), `(radius, top)` from the lowest to the highest.
 pub(crate) const STEPS_CENTER: DVec2 = DVec2::new(0.0, -0.35);
@@ -22,15 +23,15 @@ pub(crate) const HALO_TUBE: f64 = 0.022;
 pub(crate) const HALO_Z: f64 = -0.42;
 
 pub(crate) const CUBE_HALF: f64 = 0.22;
-pub(crate) const CUBE_CENTER: DVec2 = DVec2::new(-1.42, 0.62);
+pub(crate) const CUBE_CENTER: DVec2 = DVec2::new(-1.36, 0.66);
 pub(crate) const CUBE_TURN_DEGREES: f64 = 28.0;
 
 pub(crate) const GLASS_RADIUS: f64 = 0.27;
-pub(crate) const GLASS_CENTER: DVec2 = DVec2::new(1.42, 0.62);
+pub(crate) const GLASS_CENTER: DVec2 = DVec2::new(1.38, 0.66);
 
 /// Upright panels behind the steps, on the left and on the right; both turn toward the middle.
 pub(crate) const PANEL_HALF: DVec3 = DVec3::new(0.46, 0.46, 0.035);
-pub(crate) const PANEL_CENTERS: [DVec2; 2] = [DVec2::new(-1.60, -0.78), DVec2::new(1.60, -0.78)];
+pub(crate) const PANEL_CENTERS: [DVec2; 2] = [DVec2::new(-1.52, -0.85), DVec2::new(1.52, -0.85)];
 pub(crate) const PANEL_TURNS_DEGREES: [f64; 2] = [24.0, -24.0];
 
 /// The occlusion picture spans this square around the origin, seen from above with -Z at its top.
@@ -60,11 +61,29 @@ pub(crate) fn row_height(row: usize) -> f64 {
     ground_height(ROW_RADII[row])
 }
 
-/// The share of a clear sky's light that reaches the ground at `uv` of the occlusion picture, in [0, 1].
-pub(crate) fn openness(uv: DVec2) -> f64 {
-    let place = (uv - 0.5) * (2.0 * OCCLUSION_HALF_SPAN);
+/// The share of a clear sky's light that reaches the ground around the steps, at `uv` of [`ground_uv`]; in [0, 1].
+pub(crate) fn ground_openness(uv: DVec2) -> f64 {
+    openness((uv - 0.5) * (2.0 * OCCLUSION_HALF_SPAN), 0.0)
+}
+
+/// The same on the steps, at their own texture coordinates.
+pub(crate) fn steps_openness(uv: DVec2) -> f64 {
+    let step = ((uv.y * STEPS.len() as f64) as usize).min(STEPS.len() - 1);
+    let along = uv.y * STEPS.len() as f64 - step as f64;
+    let [foot, .., edge, inner] = STEP_PROFILE;
+    if along < edge {
+        // Feet of walls are darker: half of what they face is the corner.
+        return 1.0 - 0.4 * (1.0 - ((along - foot) / (edge - foot)).max(0.0)).powi(2);
+    }
+    let inside = STEPS.get(step + 1).map_or(0.0, |next| next.x);
+    let radius = STEPS[step].x + (inside - STEPS[step].x) * ((along - edge) / (inner - edge)).min(1.0);
+    let (sin, cos) = (TAU * uv.x).sin_cos();
+    openness(STEPS_CENTER + DVec2::new(sin, cos) * radius, STEPS[step].y)
+}
+
+/// The share of a clear sky's light that reaches level ground at `height`.
+fn openness(place: DVec2, height: f64) -> f64 {
     let from_axis = place.distance(STEPS_CENTER);
-    let height = ground_height(from_axis);
     let mut open = 1.0;
     for step in STEPS.iter().filter(|step| step.y > height) {
         open *= 1.0 - wall(from_axis - step.x, step.y - height);
@@ -75,11 +94,14 @@ pub(crate) fn openness(uv: DVec2) -> f64 {
         }
     }
     open *= 1.0 - 0.6 * sphere(place.distance(GLASS_CENTER), GLASS_RADIUS, GLASS_RADIUS - height);
-    open *= 1.0 - wall(to_box(place, CUBE_CENTER, CUBE_TURN_DEGREES, DVec2::splat(CUBE_HALF)), 2.0 * CUBE_HALF);
+    open *=
+        1.0 - wall(to_box(place, CUBE_CENTER, CUBE_TURN_DEGREES, DVec2::splat(CUBE_HALF)), 2.0 * CUBE_HALF - height);
     for (center, turn) in PANEL_CENTERS.into_iter().zip(PANEL_TURNS_DEGREES) {
-        open *= 1.0 - wall(to_box(place, center, turn, DVec2::new(PANEL_HALF.x, PANEL_HALF.z)), 2.0 * PANEL_HALF.y);
+        let half = DVec2::new(PANEL_HALF.x, PANEL_HALF.z);
+        open *= 1.0 - wall(to_box(place, center, turn, half), 2.0 * PANEL_HALF.y - height);
     }
-    open * if height == STEPS[2].y { 1.0 - knot(place - STEPS_CENTER) } else { 1.0 }
+    let below_knot = height == STEPS[STEPS.len() - 1].y;
+    open * if below_knot { 1.0 - knot(place - STEPS_CENTER) } else { 1.0 }
 }
 
 /// Light that a sphere takes from level ground: the form factor (r / d)^2 cos theta; none from ground above its middle.
@@ -88,9 +110,9 @@ fn sphere(distance: f64, radius: f64, height: f64) -> f64 {
     (radius * radius * height.max(0.0) / (d2 * d2.sqrt())).min(1.0)
 }
 
-/// Light that a long wall takes from level ground before it; all of it inside.
+/// Light that a long wall takes from level ground before it; inside, where nothing is seen, as much as at its foot.
 fn wall(distance: f64, height: f64) -> f64 {
-    if distance <= 0.0 { 1.0 } else { 0.5 * (1.0 - distance / distance.hypot(height)) }
+    if distance <= 0.0 { 0.5 } else { 0.5 * (1.0 - distance / distance.hypot(height)) }
 }
 
 /// The knot as a string of balls, each for the stretch of tube that falls to it.
@@ -102,7 +124,7 @@ fn knot(place: DVec2) -> f64 {
     let taken: f64 = (0..BALLS)
         .map(|i| {
             let (center, stretch) = (point(i), point(i).distance(point(i + 1)));
-            let balls = 2.0 * stretch / (std::f64::consts::PI * KNOT_TUBE);
+            let balls = 2.0 * stretch / (PI * KNOT_TUBE);
             balls * sphere(place.distance(DVec2::new(center.x, center.z)), KNOT_TUBE, center.y - lowest)
         })
         .sum();

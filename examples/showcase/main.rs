@@ -10,7 +10,7 @@ mod textures;
 
 use geometry::{backdrop, circle, closed_tube, rectangle, round_steps, rounded_box, trefoil, unit_sphere};
 use glam::{DQuat, DVec2, DVec3};
-use glb::{Extras, Glb};
+use glb::Glb;
 use image::ImageResult;
 use layout as at;
 use materials::Materials;
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// The file. The same bytes on every run.
 pub fn glb() -> ImageResult<Vec<u8>> {
     let mut glb = Glb::default();
-    let materials = Materials::add(&mut glb, &textures::grey(128, at::openness)?)?;
+    let materials = Materials::add(&mut glb)?;
     let mut nodes = Vec::new();
     nodes.extend(stage(&mut glb, &materials));
     nodes.extend(centerpiece(&mut glb, &materials));
@@ -48,15 +48,10 @@ pub fn glb() -> ImageResult<Vec<u8>> {
 
 /// Backdrop and steps, both with the occlusion that the rest casts on them.
 fn stage(glb: &mut Glb, materials: &Materials) -> [usize; 2] {
-    let sheet = backdrop(24.0, 10.0, -3.2, 1.6, 9.0);
-    let uvs = sheet.vertices.iter().map(|vertex| at::ground_uv(vertex.position.xz_plane())).collect();
-    let sheet = glb.geometry(&sheet, &Extras { uvs: Some(uvs), colors: None });
-
-    let steps = round_steps(&at::STEPS, 0.018, 64);
-    // Walls read the picture a little inside their step, where it holds the step's own top.
-    let inward = |p: DVec3| p.xz_plane() * (1.0 - 0.05 / p.xz_plane().length().max(0.1));
-    let uvs = steps.vertices.iter().map(|v| at::ground_uv(at::STEPS_CENTER + inward(v.position))).collect();
-    let steps = glb.geometry(&steps, &Extras { uvs: Some(uvs), colors: None });
+    let mut sheet = backdrop(24.0, 5.0, -3.6, 2.4, 9.0);
+    sheet.uvs = sheet.vertices.iter().map(|vertex| at::ground_uv(vertex.position.xz_plane())).collect();
+    let sheet = glb.geometry(&sheet);
+    let steps = glb.geometry(&round_steps(&at::STEPS, 0.018, 64));
     [
         glb.object("backdrop", &sheet, materials.floor, json!({})),
         glb.object("steps", &steps, materials.steps, moved(at::STEPS_CENTER.on_ground(0.0))),
@@ -66,12 +61,12 @@ fn stage(glb: &mut Glb, materials: &Materials) -> [usize; 2] {
 /// The knot and the ring of light behind it.
 fn centerpiece(glb: &mut Glb, materials: &Materials) -> [usize; 2] {
     let top = at::STEPS[2].y;
-    let knot = closed_tube(trefoil(at::KNOT_SIZE), at::KNOT_TUBE, 112, 12);
+    let knot = closed_tube(trefoil(at::KNOT_SIZE), at::KNOT_TUBE, 108, 12);
     let knot_place = at::STEPS_CENTER.on_ground(top - knot.lowest());
-    let knot = glb.geometry(&knot, &Extras::default());
-    let halo = closed_tube(circle(at::HALO_RADIUS), at::HALO_TUBE, 72, 8);
+    let knot = glb.geometry(&knot);
+    let halo = closed_tube(circle(at::HALO_RADIUS), at::HALO_TUBE, 64, 8);
     let halo_place = at::STEPS_CENTER.on_ground(top - halo.lowest()) + DVec3::Z * at::HALO_Z;
-    let halo = glb.geometry(&halo, &Extras::default());
+    let halo = glb.geometry(&halo);
     [
         glb.object("knot", &knot, materials.steel, moved(knot_place)),
         glb.object("halo", &halo, materials.halo, moved(halo_place)),
@@ -80,7 +75,7 @@ fn centerpiece(glb: &mut Glb, materials: &Materials) -> [usize; 2] {
 
 /// Three rows over perceptual roughness, and the one of glass.
 fn spheres(glb: &mut Glb, materials: &Materials) -> Vec<usize> {
-    let sphere = glb.geometry(&unit_sphere(14), &Extras::default());
+    let sphere = glb.geometry(&unit_sphere(14));
     let place = |ground: DVec2, height: f64, radius: f64| {
         let mut place = moved(ground.on_ground(height + radius));
         place["scale"] = json!([radius, radius, radius]);
@@ -99,10 +94,10 @@ fn spheres(glb: &mut Glb, materials: &Materials) -> Vec<usize> {
 
 /// A cube whose colour is its place in the colour cube.
 fn painted_cube(glb: &mut Glb, materials: &Materials) -> usize {
-    let cube = rounded_box(DVec3::splat(at::CUBE_HALF), 0.035, 2);
-    let color = |p: DVec3| (p / at::CUBE_HALF * 0.5 + 0.5).powf(1.5) * 0.8 + 0.02;
-    let colors = cube.vertices.iter().map(|vertex| color(vertex.position)).collect();
-    let cube = glb.geometry(&cube, &Extras { uvs: None, colors: Some(colors) });
+    let mut cube = rounded_box(DVec3::splat(at::CUBE_HALF), 0.035, 2);
+    let color = |p: DVec3| 0.12 + 0.5 * (p / at::CUBE_HALF * 0.5 + 0.5);
+    cube.colors = cube.vertices.iter().map(|vertex| color(vertex.position)).collect();
+    let cube = glb.geometry(&cube);
     glb.object(
         "cube",
         &cube,
@@ -119,17 +114,9 @@ fn panels(glb: &mut Glb, materials: &Materials) -> [usize; 3] {
         let offset = DQuat::from_rotation_y(turn.to_radians()) * DVec3::Z * forward;
         turned(at::PANEL_CENTERS[side].on_ground(half.y) + offset, turn)
     };
-    let sheet = |half: DVec2, repeats: f64| {
-        let mesh = rectangle(half);
-        let uv = |p: DVec3| DVec2::new(p.x + half.x, half.y - p.y) / (2.0 * half.x) * repeats;
-        let uvs = mesh.vertices.iter().map(|vertex| uv(vertex.position)).collect();
-        (mesh, Extras { uvs: Some(uvs), colors: None })
-    };
-    let (grille, extras) = sheet(half.truncate(), 6.0);
-    let grille = glb.geometry(&grille, &extras);
-    let (tile, extras) = sheet(half.truncate() - 0.06, 4.0);
-    let tile = glb.geometry(&tile, &extras);
-    let frame = glb.geometry(&rounded_box(half, 0.02, 2), &Extras::default());
+    let grille = glb.geometry(&rectangle(half.truncate(), 6.0));
+    let tile = glb.geometry(&rectangle(half.truncate() - 0.06, 4.0));
+    let frame = glb.geometry(&rounded_box(half, 0.02, 2));
     // The tile lies 2 mm before its frame.
     [
         glb.object("grille", &grille, materials.grille, place(0, 0.0)),
@@ -139,7 +126,7 @@ fn panels(glb: &mut Glb, materials: &Materials) -> [usize; 3] {
 }
 
 fn camera(glb: &mut Glb) -> usize {
-    let (eye, target) = (DVec3::new(-0.7, 2.35, 6.6), DVec3::new(0.0, 0.78, 0.0));
+    let (eye, target) = (DVec3::new(-0.4, 2.35, 6.6), DVec3::new(0.0, 0.74, 0.0));
     let forward = target - eye;
     let pitch = forward.y.atan2(forward.x.hypot(forward.z));
     let yaw = (-forward.x).atan2(-forward.z);

@@ -1,7 +1,7 @@
 //! The materials of the showcase.
 
 use super::glb::Glb;
-use super::textures;
+use super::{layout, textures};
 use image::ImageResult;
 use serde_json::{Value, json};
 
@@ -27,16 +27,18 @@ pub(crate) struct Materials {
 }
 
 impl Materials {
-    /// Adds all materials; `occlusion` is the picture for floor and steps.
-    pub(crate) fn add(glb: &mut Glb, occlusion: &[u8]) -> ImageResult<Self> {
-        let occlusion = glb.texture("occlusion", occlusion, CLAMP_TO_EDGE);
-        let matte = |name: &str, color: [f64; 3], perceptual_roughness: f64| {
+    /// Adds all materials and their textures.
+    pub(crate) fn add(glb: &mut Glb) -> ImageResult<Self> {
+        let ground =
+            glb.texture("ground occlusion", &textures::grey(112, 112, layout::ground_openness)?, CLAMP_TO_EDGE);
+        let on_steps = glb.texture("steps occlusion", &textures::grey(192, 72, layout::steps_openness)?, CLAMP_TO_EDGE);
+        let matte = |name: &str, color: [f64; 3], perceptual_roughness: f64, occlusion: usize| {
             let mut material = plain(name, color, 0.0, perceptual_roughness);
             material["occlusionTexture"] = json!({ "index": occlusion });
             material
         };
-        let floor = glb.material(matte("backdrop", [0.36, 0.38, 0.41], 0.75));
-        let steps = glb.material(matte("plaster", [0.72, 0.70, 0.66], 0.55));
+        let floor = glb.material(matte("backdrop", [0.30, 0.32, 0.35], 0.75, ground));
+        let steps = glb.material(matte("plaster", [0.66, 0.64, 0.60], 0.55, on_steps));
         Ok(Self {
             floor,
             steps,
@@ -80,8 +82,8 @@ fn row(glb: &mut Glb, name: &str, color: [f64; 3], metallic: f64) -> [usize; ROU
 
 fn halo() -> Value {
     let mut material = plain("halo", [0.0, 0.0, 0.0], 0.0, 1.0);
-    material["emissiveFactor"] = json!([1.0, 0.52, 0.18]);
-    material["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 6.0 } });
+    material["emissiveFactor"] = json!([1.0, 0.42, 0.10]);
+    material["extensions"] = json!({ "KHR_materials_emissive_strength": { "emissiveStrength": 3.0 } });
     material
 }
 

@@ -66,10 +66,10 @@ pub(crate) fn perforation() -> ImageResult<Vec<u8>> {
     png(&pixels, width, height, ExtendedColorType::La8)
 }
 
-/// A grey picture of `size` texels a side; `value` takes texture coordinates and gives [0, 1].
-pub(crate) fn grey(size: u32, value: impl Fn(DVec2) -> f64) -> ImageResult<Vec<u8>> {
-    let pixels: Vec<u8> = (0..size * size).map(|i| byte(value(texel_uv(i, size, size)))).collect();
-    png(&pixels, size, size, ExtendedColorType::L8)
+/// A grey picture; `value` takes texture coordinates and gives [0, 1].
+pub(crate) fn grey(width: u32, height: u32, value: impl Fn(DVec2) -> f64) -> ImageResult<Vec<u8>> {
+    let pixels: Vec<u8> = (0..width * height).map(|i| byte(value(texel_uv(i, width, height)))).collect();
+    png(&pixels, width, height, ExtendedColorType::L8)
 }
 
 fn rgb_pattern(color: impl Fn(DVec2) -> DVec3) -> ImageResult<Vec<u8>> {
