@@ -77,6 +77,6 @@ fn mutants_never_panic() {
             }
         }
     }
-    println!("{accepted} accepted, {refused} refused");
-    assert!(accepted > 100 && refused > 1000, "the mutants are too tame or too wild: {accepted}, {refused}");
+    // Measured: 406 accepted, 2594 refused. Half of each.
+    assert!(accepted > 200 && refused > 1300, "the mutants are too tame or too wild: {accepted}, {refused}");
 }

@@ -5,7 +5,7 @@ use crate::import::{ImportOptions, SceneChoice, model_from_slice};
 use crate::scene::{LightKind, Projection, Scene};
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::{Value, json};
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4};
 
 fn nodes(list: Value) -> Asset {
     let mut asset = Asset::new();
@@ -133,7 +133,7 @@ fn without_scenes_all_root_nodes_are_taken() {
 fn cameras_are_placed_by_their_nodes_without_scale() {
     let mut asset = nodes(json!([
         { "translation": [1, 2, 3], "scale": [2, 3, -4], "camera": 0 },
-        { "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476], "camera": 1 }
+        { "rotation": [0, FRAC_1_SQRT_2, 0, FRAC_1_SQRT_2], "camera": 1 }
     ]));
     asset.json["cameras"] = json!([
         { "name": "lens", "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.25, "zfar": 8, "aspectRatio": 2 } },
@@ -172,7 +172,7 @@ fn cameras_out_of_range_are_replaced_with_a_warning() {
     assert_eq!(imported.warnings.len(), 5);
 }
 
-fn lights(list: Value) -> Asset {
+fn lights(list: &Value) -> Asset {
     let count = list.as_array().unwrap().len();
     let on_node = |light: usize| json!({ "extensions": { "KHR_lights_punctual": { "light": light } } });
     let mut asset = nodes((0..count).map(on_node).collect());
@@ -184,7 +184,7 @@ fn lights(list: Value) -> Asset {
 
 #[test]
 fn lights_of_every_kind() {
-    let scene = lights(json!([
+    let scene = lights(&json!([
         { "type": "directional", "color": [1, 0.5, 0.25], "intensity": 3, "name": "sun" },
         { "type": "point", "range": 10 },
         { "type": "spot", "spot": { "innerConeAngle": 0.25, "outerConeAngle": 0.5 } },
@@ -204,7 +204,7 @@ fn lights_of_every_kind() {
 
 #[test]
 fn lights_out_of_range_are_repaired_with_a_warning() {
-    let imported = lights(json!([
+    let imported = lights(&json!([
         { "type": "point", "intensity": -1, "range": 0 },
         { "type": "spot", "spot": { "innerConeAngle": 2, "outerConeAngle": 3 } },
         { "type": "spot", "spot": { "innerConeAngle": 0, "outerConeAngle": 0 } }

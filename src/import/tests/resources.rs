@@ -134,3 +134,22 @@ fn the_budget_bounds_everything_that_is_decoded() {
     let error = import(40).unwrap_err().to_string();
     assert!(error.contains("needs more than is left of 40 bytes in all; reduce the model"), "{error}");
 }
+
+#[test]
+fn progress_goes_through_three_stages() {
+    #[derive(Default)]
+    struct Log(std::sync::Mutex<Vec<(String, u64, u64)>>);
+    impl crate::progress::Progress for Log {
+        fn begin(&self, stage: &str, total: u64) {
+            self.0.lock().unwrap().push((stage.into(), total, 0));
+        }
+        fn advance(&self, steps: u64) {
+            self.0.lock().unwrap().last_mut().unwrap().2 += steps;
+        }
+    }
+    let log = Log::default();
+    let options = ImportOptions { progress: &log, ..Default::default() };
+    crate::import::model_from_slice(&super::hostile::model().glb(), "model", None, &options).unwrap();
+    let expected = [("read", 0, 0), ("decode images", 1, 1), ("build geometry", 2, 2)];
+    assert_eq!(*log.0.lock().unwrap(), expected.map(|(stage, total, done)| (stage.to_owned(), total, done)));
+}

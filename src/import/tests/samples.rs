@@ -1,5 +1,7 @@
 //! The sample models. They lie outside the repository; without them these tests are skipped.
 
+#![expect(clippy::print_stdout, reason = "skipped tests and load times are read from the log")]
+
 use crate::import::{ImportError, ImportOptions, Imported, model_from_path};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -62,7 +64,6 @@ fn sample_models_load() {
             scene.materials.len(),
             scene.images.len(),
         ];
-        println!("  {found:?}");
         check_promises(name, &scene);
         assert_eq!(found, expected, "{name}");
     }

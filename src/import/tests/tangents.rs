@@ -99,6 +99,18 @@ fn a_vertex_shared_by_a_hundred_thousand_triangles_is_no_trap() {
     assert!(tangents.iter().all(|tangent| tangent.distance(Vec4::new(1.0, 0.0, 0.0, 1.0)) < 2e-2));
 }
 
+#[test]
+fn triangles_without_area_take_the_tangents_of_their_vertices_in_linear_time() {
+    const DEGENERATE: usize = 300_000;
+    let mut asset = square(&UPRIGHT);
+    let indices: Vec<u16> = [0, 1, 2, 2, 1, 3].into_iter().chain([0, 1, 1].repeat(DEGENERATE)).collect();
+    asset.json["meshes"][0]["primitives"][0]["indices"] = json!(asset.indices(&indices));
+    let primitive = asset.primitive();
+    assert_eq!(primitive.indices.len(), indices.len());
+    assert_eq!(primitive.positions.len(), 4);
+    assert_eq!(primitive.tangents.unwrap(), [Vec4::new(1.0, 0.0, 0.0, 1.0); 4]);
+}
+
 /// Corner by corner: position, normal, tangent.
 fn corners(primitive: &Primitive) -> Vec<(Vec3, Vec4)> {
     let tangents = primitive.tangents.as_ref().unwrap();
