@@ -81,6 +81,10 @@ impl Accessors<'_> {
         let (kind, component) = accessor_types(accessor, index)?;
         let (element, packed) = element_bytes(kind, component);
         let count = accessor.count.0;
+        if accessor.buffer_view.is_none() && count > self.limits.elements_without_data {
+            let problem = format!("asks for {count} elements and has no data for them");
+            return Err(Fault::at(format_args!("/accessors/{index}/count"), problem));
+        }
         self.budget.take(count, size_of::<T>() as u64, format_args!("/accessors/{index}"))?;
         let mut values = match accessor.buffer_view {
             Some(view) => {
@@ -88,10 +92,6 @@ impl Accessors<'_> {
                 let stride = stride(self.root, view.value()).unwrap_or(packed);
                 let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
                 elements(bytes, offset, count, stride, element).map(&decode).collect()
-            }
-            None if count > self.limits.elements_without_data => {
-                let problem = format!("asks for {count} elements and has no data for them");
-                return Err(Fault::at(format_args!("/accessors/{index}/count"), problem));
             }
             None => vec![zero; count as usize],
         };

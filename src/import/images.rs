@@ -14,6 +14,9 @@ use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::Cursor;
 
+/// What a PNG may unpack besides its pixels: rows, profiles and comments, which may be bombs as well.
+const DECODER_BYTES: u64 = 64 << 20;
+
 /// Decodes those images of the document that `indices` list, in that order, on all cores.
 pub(super) fn import(
     accessors: &Accessors<'_>,
@@ -86,9 +89,8 @@ fn decode(
     fault: impl Fn(String) -> Fault,
 ) -> Result<(u32, u32, Pixels), Fault> {
     let broken = |error: &dyn Display| fault(format!("cannot be decoded: {error}"));
-    // Decoders keep within what is left of the budget, of which the result is taken before it exists.
     let mut limits = DecoderLimits::no_limits();
-    limits.max_alloc = Some(accessors.budget.left());
+    limits.max_alloc = Some(DECODER_BYTES);
     let image = guarded(|| match kind(bytes) {
         "PNG" => {
             let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(|error| broken(&error))?;

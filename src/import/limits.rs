@@ -33,10 +33,6 @@ impl Budget {
         Self { limit, left: AtomicU64::new(limit) }
     }
 
-    pub(super) fn left(&self) -> u64 {
-        self.left.load(Ordering::Relaxed)
-    }
-
     /// Spends `count` items of `size` bytes for what is found at `pointer`.
     pub(super) fn take(&self, count: u64, size: u64, pointer: impl Display) -> Result<(), Fault> {
         let spend = |left: u64| left.checked_sub(count.checked_mul(size)?);
@@ -48,7 +44,9 @@ impl Budget {
     }
 }
 
-/// Runs somebody else's decoder: a panic inside it is `None`, because no file may take the process down.
+/// Runs somebody else's code on data of the file: a panic inside it is `None`, because no file may take the process
+/// down. The last resort, for panics that are known (the exr crate asserts on some damaged files) or feared; the
+/// process's panic hook still has its say.
 pub(super) fn guarded<T>(decode: impl FnOnce() -> T) -> Option<T> {
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(decode)).ok()
 }

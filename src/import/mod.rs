@@ -100,7 +100,7 @@ pub fn model_from_path(path: &Path, options: &ImportOptions<'_>) -> Result<Impor
     let source_name = path.display().to_string();
     options.progress.begin("read", 0);
     let bytes = read_file(path, options.limits.decoded_bytes).map_err(|fault| fault.in_file(&source_name))?;
-    model_from_slice(&bytes, &source_name, Some(path.parent().unwrap_or(Path::new(""))), options)
+    import_named(&bytes, &source_name, Some(path.parent().unwrap_or(Path::new(""))), options)
 }
 
 /// Imports the bytes of a .gltf or .glb file. `source_name` stands for them in messages; `base_dir` is the folder that
@@ -109,6 +109,16 @@ pub fn model_from_path(path: &Path, options: &ImportOptions<'_>) -> Result<Impor
 /// # Errors
 /// As [`model_from_path`].
 pub fn model_from_slice(
+    bytes: &[u8],
+    source_name: &str,
+    base_dir: Option<&Path>,
+    options: &ImportOptions<'_>,
+) -> Result<Imported, ImportError> {
+    options.progress.begin("read", 0);
+    import_named(bytes, source_name, base_dir, options)
+}
+
+fn import_named(
     bytes: &[u8],
     source_name: &str,
     base_dir: Option<&Path>,
@@ -141,7 +151,6 @@ fn import_model(
 ) -> Result<Imported, Fault> {
     let budget = Budget::new(options.limits.decoded_bytes);
     let resources = Resources::new(base_dir, &budget);
-    options.progress.begin("read", 0);
     let container = container::split(bytes, notes)?;
     let document = document::parse(container.json, container.json_offset, notes)?;
     references::check(&document)?;

@@ -18,18 +18,13 @@ const SAFE_RANGE: std::ops::RangeInclusive<f32> = 1e-8..=1e8;
 /// Tangents of a list of triangles, one for each corner. `corners` has normals, and the texture coordinates `uv_set`.
 pub(super) fn generate(corners: &Vertices, uv_set: usize) -> Vec<Vec4> {
     let Some(normals) = &corners.normals else { return Vec::new() };
-    let mut job = Job {
-        positions: &corners.positions,
-        normals,
-        uvs: &corners.uvs[uv_set],
-        position_scale: scale_into_range(corners.positions.iter().map(|position| position.abs().max_element())),
-        uv_scale: scale_into_range(corners.uvs[uv_set].iter().map(|uv| uv.abs().max_element())),
-        tangents: vec![Vec4::ZERO; corners.positions.len()],
-    };
-    let shared_by_few = job.most_corners_per_vertex() <= MAX_CORNERS_PER_VERTEX;
+    let mut job = Job::new(&corners.positions, normals, &corners.uvs[uv_set]);
+    let welded = job.weld();
+    let shared_by_few = welded.values().all(|vertex| vertex.corners <= MAX_CORNERS_PER_VERTEX);
     if !shared_by_few || guarded(|| generate_tangents::<_, StdOps>(&mut job)).is_none_or(|result| result.is_err()) {
         job.use_gradients();
     }
+    job.fill_degenerate(&welded);
     let mut tangents = job.tangents;
     repair(&mut tangents, normals);
     tangents
@@ -54,16 +49,41 @@ fn scale_into_range(magnitudes: impl Iterator<Item = f32>) -> f32 {
     }
 }
 
+/// What MikkTSpace takes for one vertex: the bits of position, normal and texture coordinates.
+type Key = [u32; 8];
+
+struct WeldedVertex {
+    /// How many corners of triangles it is.
+    corners: usize,
+    first_corner: usize,
+}
+
 struct Job<'a> {
     positions: &'a [Vec3],
     normals: &'a [Vec3],
     uvs: &'a [Vec2],
     position_scale: f32,
     uv_scale: f32,
+    /// First corners of the triangles whose corners are three different points. MikkTSpace skips the others, at a
+    /// cost that is quadratic in their number, so they are kept from it.
+    faces: Vec<usize>,
     tangents: Vec<Vec4>,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
+    fn new(positions: &'a [Vec3], normals: &'a [Vec3], uvs: &'a [Vec2]) -> Self {
+        let position_scale = scale_into_range(positions.iter().map(|position| position.abs().max_element()));
+        let uv_scale = scale_into_range(uvs.iter().map(|uv| uv.abs().max_element()));
+        let tangents = vec![Vec4::ZERO; positions.len()];
+        let mut job = Self { positions, normals, uvs, position_scale, uv_scale, faces: Vec::new(), tangents };
+        let differ = |&first: &usize| {
+            let [a, b, c] = [0, 1, 2].map(|corner| job.position_of(first + corner));
+            a != b && b != c && c != a
+        };
+        job.faces = (0..positions.len()).step_by(3).filter(differ).collect();
+        job
+    }
+
     fn position_of(&self, corner: usize) -> Vec3 {
         self.positions[corner] * self.position_scale
     }
@@ -73,21 +93,41 @@ impl Job<'_> {
         self.uvs[corner] * Vec2::new(self.uv_scale, -self.uv_scale)
     }
 
-    fn most_corners_per_vertex(&self) -> usize {
-        let mut counts = HashMap::new();
-        for corner in 0..self.positions.len() {
-            let (position, normal, uv) = (self.position_of(corner), self.normals[corner], self.uv_of(corner));
-            let key = [position.x, position.y, position.z, normal.x, normal.y, normal.z, uv.x, uv.y];
-            // Adding 0 makes the two zeros one.
-            *counts.entry(key.map(|x| (x + 0.0).to_bits())).or_insert(0) += 1;
+    fn key(&self, corner: usize) -> Key {
+        let (position, normal, uv) = (self.position_of(corner), self.normals[corner], self.uv_of(corner));
+        let numbers = [position.x, position.y, position.z, normal.x, normal.y, normal.z, uv.x, uv.y];
+        // Adding 0 makes the two zeros one.
+        numbers.map(|x| (x + 0.0).to_bits())
+    }
+
+    fn weld(&self) -> HashMap<Key, WeldedVertex> {
+        let mut welded = HashMap::with_capacity(self.faces.len());
+        for corner in self.faces.iter().flat_map(|&first| first..first + 3) {
+            let vertex = welded.entry(self.key(corner)).or_insert(WeldedVertex { corners: 0, first_corner: corner });
+            vertex.corners += 1;
         }
-        counts.into_values().max().unwrap_or(0)
+        welded
+    }
+
+    /// Triangles without area take over the tangents of the vertices that they share with others.
+    fn fill_degenerate(&mut self, welded: &HashMap<Key, WeldedVertex>) {
+        let mut faces = self.faces.iter().copied().peekable();
+        for first in (0..self.positions.len()).step_by(3) {
+            if faces.next_if_eq(&first).is_some() {
+                continue;
+            }
+            for corner in first..first + 3 {
+                if let Some(vertex) = welded.get(&self.key(corner)) {
+                    self.tangents[corner] = self.tangents[vertex.first_corner];
+                }
+            }
+        }
     }
 
     /// Each triangle's own gradient of u, without smoothing.
     fn use_gradients(&mut self) {
-        for triangle in (0..self.positions.len()).step_by(3) {
-            let [a, b, c] = [0, 1, 2].map(|corner| triangle + corner);
+        for &first in &self.faces {
+            let [a, b, c] = [0, 1, 2].map(|corner| first + corner);
             let (edge1, edge2) = (self.position_of(b) - self.position_of(a), self.position_of(c) - self.position_of(a));
             let (uv1, uv2) = (self.uv_of(b) - self.uv_of(a), self.uv_of(c) - self.uv_of(a));
             let sign = if uv1.perp_dot(uv2) < 0.0 { -1.0 } else { 1.0 };
@@ -102,7 +142,7 @@ impl Job<'_> {
 
 impl Geometry for Job<'_> {
     fn num_faces(&self) -> usize {
-        self.positions.len() / 3
+        self.faces.len()
     }
 
     fn num_vertices_of_face(&self, _face: usize) -> usize {
@@ -110,20 +150,21 @@ impl Geometry for Job<'_> {
     }
 
     fn position(&self, face: usize, vertex: usize) -> [f32; 3] {
-        self.position_of(3 * face + vertex).to_array()
+        self.position_of(self.faces[face] + vertex).to_array()
     }
 
     fn normal(&self, face: usize, vertex: usize) -> [f32; 3] {
-        self.normals[3 * face + vertex].to_array()
+        self.normals[self.faces[face] + vertex].to_array()
     }
 
     fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
-        self.uv_of(3 * face + vertex).to_array()
+        self.uv_of(self.faces[face] + vertex).to_array()
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
         // Without a space, as in a triangle of no area without neighbours, `repair` finds a direction.
         let tangent = space.map_or(Vec4::ZERO, |space| Vec4::from_array(space.tangent_encoded()));
-        self.tangents[3 * face + vertex] = if tangent.is_finite() { tangent } else { Vec4::ZERO };
+        let corner = self.faces[face] + vertex;
+        self.tangents[corner] = if tangent.is_finite() { tangent } else { Vec4::ZERO };
     }
 }
