@@ -22,7 +22,7 @@ pub(super) fn build(
         return Err(Fault::at(format_args!("{here}/mode"), "is not a primitive mode"));
     };
     let uv_sets = appearance.textures().map(|(_, texture)| texture.uv_set + 1).max().unwrap_or(0);
-    let Some(mut vertices) = vertices::read(accessors, primitive, here, uv_sets, notes)? else { return Ok(None) };
+    let Some(vertices) = vertices::read(accessors, primitive, here, uv_sets, notes)? else { return Ok(None) };
     let listed = indices(accessors, primitive, here, vertices.positions.len())?;
     let shapes_at_most = 3 * listed.len() as u64;
     accessors.budget.take(shapes_at_most, size_of::<u32>() as u64, here)?;
@@ -33,8 +33,7 @@ pub(super) fn build(
     }
 
     let topology = topology::topology(mode);
-    let mut shape = Shape { vertices: Vertices::default(), indices };
-    shape.vertices = std::mem::take(&mut vertices);
+    let mut shape = Shape { vertices, indices };
     shape.complete_normals(topology, accessors, here, notes)?;
     let normal_uv_set = appearance.texture(TextureSlot::Normal).map(|texture| texture.uv_set as usize);
     shape.complete_tangents(topology, normal_uv_set, accessors, here)?;

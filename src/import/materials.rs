@@ -59,9 +59,6 @@ impl Reader<'_> {
     }
 
     fn read_slots(&mut self, json: &json::Material, material: &mut Material) -> Result<(), Fault> {
-        let info = |info: &'_ json::texture::Info| {
-            (info.index.value() as u64, info.tex_coord, info.extensions.clone().map(|raw| raw.others))
-        };
         let pbr = &json.pbr_metallic_roughness;
         for (slot, texture, name) in [
             (TextureSlot::BaseColor, &pbr.base_color_texture, "pbrMetallicRoughness/baseColorTexture"),
@@ -72,8 +69,10 @@ impl Reader<'_> {
             ),
             (TextureSlot::Emissive, &json.emissive_texture, "emissiveTexture"),
         ] {
-            if let Some((index, tex_coord, raw)) = texture.as_ref().map(info) {
-                material.set_texture(slot, self.texture((index, tex_coord, raw.as_ref()), name)?);
+            if let Some(info) = texture {
+                let raw = info.extensions.as_ref().map(|raw| &raw.others);
+                let texture = self.texture((info.index.value() as u64, info.tex_coord, raw), name)?;
+                material.set_texture(slot, texture);
             }
         }
         if let Some(texture) = &json.normal_texture {

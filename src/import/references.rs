@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::error::{EXPORT_AGAIN, Fault};
 use gltf::json::accessor::{Accessor, ComponentType, Type};
+use gltf::json::mesh::Semantic;
 use gltf::json::validation::Checked;
 use gltf::json::{Root, texture};
 use serde_json::Value;
@@ -152,16 +153,21 @@ fn strided_length(count: u64, stride: u64, element: u64) -> u64 {
     if count == 0 { 0 } else { (count - 1).saturating_mul(stride).saturating_add(element) }
 }
 
+/// The name of a vertex attribute. The typed document has one name for all that the specification does not define.
+pub(super) fn semantic_name(semantic: &Checked<Semantic>) -> String {
+    match semantic {
+        Checked::Valid(semantic) => semantic.to_string(),
+        Checked::Invalid => "_".into(),
+    }
+}
+
 fn check_meshes(root: &Root) -> Result<(), Fault> {
     let accessors = root.accessors.len();
     for (m, mesh) in root.meshes.iter().enumerate() {
         for (p, primitive) in mesh.primitives.iter().enumerate() {
             let here = format_args!("/meshes/{m}/primitives/{p}").to_string();
             for (semantic, accessor) in &primitive.attributes {
-                let name = match semantic {
-                    Checked::Valid(semantic) => semantic.to_string(),
-                    Checked::Invalid => "_".into(),
-                };
+                let name = semantic_name(semantic);
                 within(accessor.value() as u64, accessors, "accessors", format_args!("{here}/attributes/{name}"))?;
             }
             within_optional(primitive.indices, accessors, "accessors", format_args!("{here}/indices"))?;

@@ -2,6 +2,7 @@
 
 use super::accessor::Accessors;
 use super::error::{Fault, Notes};
+use super::references::semantic_name;
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::validation::Checked;
@@ -120,10 +121,7 @@ fn check_counts(accessors: &Accessors<'_>, primitive: &Primitive, here: &str, co
     for (semantic, accessor) in &primitive.attributes {
         let other = accessors.count(accessor.value());
         if other != count {
-            let name = match semantic {
-                Checked::Valid(semantic) => semantic.to_string(),
-                Checked::Invalid => "_".into(),
-            };
+            let name = semantic_name(semantic);
             let problem = format!("has {other} elements, POSITION has {count}");
             return Err(Fault::at(format_args!("{here}/attributes/{name}"), problem));
         }
