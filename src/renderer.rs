@@ -11,7 +11,7 @@ use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
 use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
-use crate::shader::{DisplayFeatures, ShaderError};
+use crate::shader::{DisplayFeatures, ShaderError, ShaderSources};
 use glam::{DMat3, DVec2, DVec3, DVec4};
 use wgpu::util::DeviceExt;
 
@@ -52,6 +52,7 @@ pub struct FrameStats {
 /// Pipelines and tables for one device.
 #[derive(Debug)]
 pub struct Renderer {
+    sources: ShaderSources,
     shared: SharedTextures,
     forward: ForwardPipelines,
     background: BackgroundPipeline,
@@ -60,6 +61,11 @@ pub struct Renderer {
 
 impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self::with_shaders(device, queue, ShaderSources::default())
+    }
+
+    /// A renderer some of whose shader files are replaced.
+    pub fn with_shaders(device: &wgpu::Device, queue: &wgpu::Queue, sources: ShaderSources) -> Self {
         let clamp_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("clamp"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -67,6 +73,7 @@ impl Renderer {
             ..Default::default()
         });
         Self {
+            sources,
             shared: SharedTextures { dfg: upload_dfg(device, queue), clamp_sampler },
             forward: ForwardPipelines::default(),
             background: BackgroundPipeline::new(device),
@@ -94,7 +101,7 @@ impl Renderer {
         target: ForwardTarget,
     ) -> Result<FramePlan, RenderError> {
         let plan = plan(&scene.drawables, scene.features, view);
-        self.forward.prepare(device, scene, &plan, target)?;
+        self.forward.prepare(device, &self.sources, scene, &plan, target)?;
         Ok(plan)
     }
 
@@ -120,7 +127,7 @@ impl Renderer {
                     environment.environment_from_world,
                     environment.intensity * panorama.scale,
                 );
-                Some(self.background.prepare(device, forward_target, &panorama, &uniform)?)
+                Some(self.background.prepare(device, &self.sources, forward_target, &panorama, &uniform)?)
             }
             _ => None,
         };
@@ -151,7 +158,7 @@ impl Renderer {
         (target, format): (&wgpu::TextureView, wgpu::TextureFormat),
     ) -> Result<(), RenderError> {
         let features = DisplayFeatures { tone_map: view.tone_map, encode_srgb: !formats::encodes_srgb(format) };
-        let pass = self.display.prepare(device, features, format, radiance, &display_uniform(view))?;
+        let pass = self.display.prepare(device, &self.sources, features, format, radiance, &display_uniform(view))?;
         pass.encode(encoder, target);
         Ok(())
     }

@@ -4,8 +4,9 @@ const DISTANCE_SQUARED_MIN: f32 = 1e-4;
 // Inverse-square law with the smooth window of KHR_lights_punctual, 1/m^2.
 // `inverse_range_squared` is 1/range^2, or 0 for a light without a range.
 fn distance_attenuation(inverse_range_squared: f32, distance_squared: f32) -> f32 {
-    let x = distance_squared * inverse_range_squared;
-    return saturate(1.0 - x * x) / max(distance_squared, DISTANCE_SQUARED_MIN);
+    let d2 = max(distance_squared, DISTANCE_SQUARED_MIN);
+    let x = d2 * inverse_range_squared;
+    return saturate(1.0 - x * x) / d2;
 }
 
 // Spot cone of KHR_lights_punctual: 1 inside the inner cone, 0 outside the outer one.

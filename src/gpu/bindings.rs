@@ -15,7 +15,7 @@ pub const FRAME_ENVIRONMENT: u32 = 5;
 pub const FRAME_ATLAS: u32 = 6;
 
 /// Group 0 of the forward pass: what the scene's light needs is bound, the rest has no binding.
-pub fn frame_layout(device: &Device, features: SceneFeatures) -> BindGroupLayout {
+pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
     let mut entries = vec![
         buffer(FRAME_UNIFORM, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform),
         buffer(FRAME_INSTANCES, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }),
@@ -32,28 +32,47 @@ pub fn frame_layout(device: &Device, features: SceneFeatures) -> BindGroupLayout
             texture(FRAME_ATLAS, true),
         ]);
     }
-    layout(device, "frame", &entries)
+    entries
 }
 
-/// Group 1 of the forward pass.
-pub fn material_layout(device: &Device, features: &MaterialFeatures) -> BindGroupLayout {
+/// Group 1 of the forward pass: the uniform, the samplers and the textures that are read.
+pub fn material_entries(features: &MaterialFeatures) -> Vec<BindGroupLayoutEntry> {
     let samplers = features.sampler_count();
     let mut entries = vec![buffer(MATERIAL_UNIFORM_BINDING, ShaderStages::FRAGMENT, BufferBindingType::Uniform)];
     entries.extend((0..samplers).map(|index| sampler(MATERIAL_SAMPLER_BINDING + index)));
     let textures = features.textures().enumerate();
     entries.extend(textures.map(|(index, _)| texture(material_texture_binding(samplers, index), true)));
-    layout(device, "material", &entries)
+    entries
 }
 
 /// The panorama behind the scene: uniform, texture, sampler.
-pub fn background_layout(device: &Device) -> BindGroupLayout {
-    let stages = ShaderStages::VERTEX_FRAGMENT;
-    layout(device, "background", &[buffer(0, stages, BufferBindingType::Uniform), texture(1, true), sampler(2)])
+pub fn background_entries() -> Vec<BindGroupLayoutEntry> {
+    vec![buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform), texture(1, true), sampler(2)]
 }
 
 /// Scene radiance to display: uniform, texture.
+pub fn display_entries() -> Vec<BindGroupLayoutEntry> {
+    vec![buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform), texture(1, false)]
+}
+
+/// The layout of [`frame_entries`].
+pub fn frame_layout(device: &Device, features: SceneFeatures) -> BindGroupLayout {
+    layout(device, "frame", &frame_entries(features))
+}
+
+/// The layout of [`material_entries`].
+pub fn material_layout(device: &Device, features: &MaterialFeatures) -> BindGroupLayout {
+    layout(device, "material", &material_entries(features))
+}
+
+/// The layout of [`background_entries`].
+pub fn background_layout(device: &Device) -> BindGroupLayout {
+    layout(device, "background", &background_entries())
+}
+
+/// The layout of [`display_entries`].
 pub fn display_layout(device: &Device) -> BindGroupLayout {
-    layout(device, "display", &[buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform), texture(1, false)])
+    layout(device, "display", &display_entries())
 }
 
 fn layout(device: &Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {

@@ -56,9 +56,8 @@ fn bind(
         usage: wgpu::BufferUsages::UNIFORM,
     });
     let sampler_count = features.sampler_count();
-    let samplers: Vec<wgpu::Sampler> = material_samplers(material, scene)
+    let samplers: Vec<wgpu::Sampler> = material_samplers(&features, material, scene)
         .into_iter()
-        .take(sampler_count as usize)
         .map(|sampler| cache.sampler(device, sampler))
         .collect();
     let views: Vec<wgpu::TextureView> = features

@@ -5,7 +5,7 @@ use crate::gpu::bindings::background_layout;
 use crate::gpu::formats;
 use crate::gpu_scene::{Panorama, entry};
 use crate::shader::types::BackgroundUniform;
-use crate::shader::{Composed, ShaderError, background_module, create_module};
+use crate::shader::{Composed, ShaderError, ShaderSources, background_module, create_module};
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
 
@@ -45,11 +45,12 @@ impl BackgroundPipeline {
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
+        sources: &ShaderSources,
         target: ForwardTarget,
         panorama: &Panorama,
         uniform: &BackgroundUniform,
     ) -> Result<BackgroundPass, ShaderError> {
-        let pipeline = self.pipeline(device, target)?;
+        let pipeline = self.pipeline(device, sources, target)?;
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("background"),
             contents: bytemuck::bytes_of(uniform),
@@ -67,14 +68,19 @@ impl BackgroundPipeline {
         Ok(BackgroundPass { group, pipeline })
     }
 
-    fn pipeline(&mut self, device: &wgpu::Device, target: ForwardTarget) -> Result<wgpu::RenderPipeline, ShaderError> {
+    fn pipeline(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        target: ForwardTarget,
+    ) -> Result<wgpu::RenderPipeline, ShaderError> {
         if let Some(pipeline) = self.pipelines.get(&target) {
             return Ok(pipeline.clone());
         }
         let module = match &self.module {
             Some((_, module)) => module.clone(),
             None => {
-                let composed = background_module()?;
+                let composed = background_module(sources)?;
                 let module = create_module(device, "background", &composed)?;
                 self.module.insert((composed, module)).1.clone()
             }

@@ -3,7 +3,7 @@
 use crate::gpu::bindings::display_layout;
 use crate::gpu_scene::entry;
 use crate::shader::types::DisplayUniform;
-use crate::shader::{Composed, DisplayFeatures, ShaderError, create_module, display_module};
+use crate::shader::{Composed, DisplayFeatures, ShaderError, ShaderSources, create_module, display_module};
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
 
@@ -35,6 +35,7 @@ impl DisplayPipelines {
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
+        sources: &ShaderSources,
         features: DisplayFeatures,
         format: wgpu::TextureFormat,
         radiance: &wgpu::TextureView,
@@ -43,7 +44,7 @@ impl DisplayPipelines {
         let pipeline = match self.pipelines.get(&(features, format)) {
             Some((_, pipeline)) => pipeline.clone(),
             None => {
-                let composed = display_module(features)?;
+                let composed = display_module(sources, features)?;
                 let module = create_module(device, "display", &composed)?;
                 let pipeline = create_pipeline(device, &self.layout, &module, format);
                 self.pipelines.insert((features, format), (composed, pipeline.clone()));

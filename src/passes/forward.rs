@@ -4,7 +4,9 @@ use crate::frame::{Draw, FramePlan, PipelineKey};
 use crate::gpu::formats;
 use crate::gpu_scene::GpuScene;
 use crate::scene::Topology;
-use crate::shader::{Alpha, Composed, ForwardFeatures, ShaderError, attributes, create_module, forward_module};
+use crate::shader::{
+    Alpha, Composed, ForwardFeatures, ShaderError, ShaderSources, attributes, create_module, forward_module,
+};
 use std::collections::HashMap;
 
 /// The attachments that forward pipelines are made for.
@@ -26,6 +28,7 @@ impl ForwardPipelines {
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
+        sources: &ShaderSources,
         scene: &GpuScene,
         plan: &FramePlan,
         target: ForwardTarget,
@@ -34,19 +37,24 @@ impl ForwardPipelines {
             if self.pipelines.contains_key(&(*key, target)) {
                 continue;
             }
-            let module = self.module(device, &key.features)?;
+            let module = self.module(device, sources, &key.features)?;
             let pipeline = create_pipeline(device, &module, scene, key, target);
             self.pipelines.insert((*key, target), pipeline);
         }
         Ok(())
     }
 
-    fn module(&mut self, device: &wgpu::Device, features: &ForwardFeatures) -> Result<wgpu::ShaderModule, ShaderError> {
+    fn module(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        features: &ForwardFeatures,
+    ) -> Result<wgpu::ShaderModule, ShaderError> {
         let key = features.module_key();
         if let Some((_, module)) = self.modules.get(&key) {
             return Ok(module.clone());
         }
-        let composed = forward_module(&key)?;
+        let composed = forward_module(sources, &key)?;
         let module = create_module(device, &format!("forward/{key}"), &composed)?;
         self.modules.insert(key, (composed, module.clone()));
         Ok(module)

@@ -1,7 +1,7 @@
 //! `#import` with once-semantics, slots, and errors that name the original file and line.
 
-use super::sources::source;
-use std::collections::{BTreeMap, HashSet};
+use super::sources::ShaderSources;
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// What fills a slot: a file under `shaders/`, or generated text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,19 +35,19 @@ pub enum ShaderError {
 }
 
 /// Resolves all imports of the file `root`. Every file and slot appears once, before its first importer.
-pub fn compose(root: &'static str, slots: &Slots) -> Result<Composed, ShaderError> {
-    let mut composer =
-        Composer { slots, done: HashSet::new(), open: Vec::new(), text: String::new(), origins: Vec::new() };
-    let text = source(root).ok_or_else(|| ShaderError::UnknownImport {
+pub fn compose(sources: &ShaderSources, root: &str, slots: &Slots) -> Result<Composed, ShaderError> {
+    let text = sources.get(root).ok_or_else(|| ShaderError::UnknownImport {
         file: "(root)".into(),
         line: 0,
         target: root.into(),
     })?;
+    let mut composer = Composer::new(sources, slots);
     composer.append(root, text)?;
     Ok(Composed { text: composer.text, origins: composer.origins })
 }
 
 struct Composer<'a> {
+    sources: &'a ShaderSources,
     slots: &'a Slots,
     done: HashSet<String>,
     open: Vec<String>,
@@ -55,7 +55,11 @@ struct Composer<'a> {
     origins: Vec<(String, usize)>,
 }
 
-impl Composer<'_> {
+impl<'a> Composer<'a> {
+    fn new(sources: &'a ShaderSources, slots: &'a Slots) -> Self {
+        Self { sources, slots, done: HashSet::new(), open: Vec::new(), text: String::new(), origins: Vec::new() }
+    }
+
     fn append(&mut self, name: &str, text: &str) -> Result<(), ShaderError> {
         self.open.push(name.to_owned());
         // Imports may stand anywhere, so they are resolved before the file's own lines are written.
@@ -87,35 +91,41 @@ impl Composer<'_> {
     fn resolve(&self, argument: &str, file: &str, line: usize) -> Result<(String, String), ShaderError> {
         let unknown = |target: &str| ShaderError::UnknownImport { file: file.into(), line, target: target.into() };
         if let Some(path) = argument.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
-            let text = source(path).ok_or_else(|| unknown(path))?;
-            return Ok((path.to_owned(), text.to_owned()));
+            return self.file(path).ok_or_else(|| unknown(path));
         }
         if let Some(slot) = argument.strip_prefix('<').and_then(|rest| rest.strip_suffix('>')) {
             return match self.slots.get(slot).ok_or_else(|| unknown(argument))? {
-                Slot::File(path) => Ok(((*path).to_owned(), source(path).ok_or_else(|| unknown(path))?.to_owned())),
+                Slot::File(path) => self.file(path).ok_or_else(|| unknown(path)),
                 Slot::Text(text) => Ok((argument.to_owned(), text.clone())),
             };
         }
         Err(ShaderError::BadImport { file: file.into(), line, text: argument.into() })
     }
+
+    fn file(&self, path: &str) -> Option<(String, String)> {
+        Some((path.to_owned(), self.sources.get(path)?.to_owned()))
+    }
 }
 
 impl Composed {
-    /// WGSL composed elsewhere, for tests that edit a module after composition.
-    pub fn with_text(&self, text: String) -> Self {
-        Self { text, origins: self.origins.clone() }
+    /// The file or `<slot>` that line `line` of the text came from, and its number there; both count from 1.
+    pub fn origin(&self, line: usize) -> Option<(&str, usize)> {
+        let (file, line) = self.origins.get(line.checked_sub(1)?)?;
+        Some((file, *line))
+    }
+
+    /// The files and `<slot>`s that the text consists of.
+    pub fn files(&self) -> BTreeSet<&str> {
+        self.origins.iter().map(|(file, _)| file.as_str()).collect()
     }
 
     /// Parses the text; an error names the file and line that it came from.
     pub fn parse(&self) -> Result<naga::Module, ShaderError> {
         naga::front::wgsl::parse_str(&self.text).map_err(|error| {
             let at = error.location(&self.text).map_or(0, |location| location.line_number as usize);
-            let (file, line) = at
-                .checked_sub(1)
-                .and_then(|index| self.origins.get(index))
-                .cloned()
-                .unwrap_or_else(|| ("(composed)".into(), at));
+            let (file, line) = self.origin(at).unwrap_or(("(composed)", at));
             let message = error.emit_to_string(&self.text);
+            let file = file.to_owned();
             ShaderError::Wgsl { file, line, message: message.lines().next().unwrap_or_default().to_owned() }
         })
     }
@@ -133,7 +143,7 @@ mod tests {
     fn a_file_is_imported_once_and_before_its_importer() {
         let slots = text_slots(&[("tone_map", "fn tone_map(x: vec3f) -> vec3f { return x; }"), ("types", "")]);
         let slots: Slots = slots.into_iter().chain([("encode", Slot::File("color/encode_srgb.wgsl"))]).collect();
-        let composed = compose("color/encode_srgb.wgsl", &slots).unwrap();
+        let composed = compose(&ShaderSources::default(), "color/encode_srgb.wgsl", &slots).unwrap();
         assert_eq!(composed.text.matches("fn srgb_from_linear").count(), 1);
         assert!(composed.text.find("fn srgb_from_linear") < composed.text.find("fn encode"));
     }
@@ -141,16 +151,8 @@ mod tests {
     #[test]
     fn unknown_and_malformed_imports_are_errors_with_their_line() {
         let slots = text_slots(&[("material", "\n#import \"no/such.wgsl\"")]);
-        let composer = |text: &str| {
-            let mut composer = Composer {
-                slots: &slots,
-                done: HashSet::new(),
-                open: Vec::new(),
-                text: String::new(),
-                origins: Vec::new(),
-            };
-            composer.append("here.wgsl", text).unwrap_err().to_string()
-        };
+        let sources = ShaderSources::default();
+        let composer = |text: &str| Composer::new(&sources, &slots).append("here.wgsl", text).unwrap_err().to_string();
         assert_eq!(composer("#import <material>"), "<material>:2: imports no/such.wgsl, which does not exist");
         assert_eq!(composer("\n\n#import <nothing>"), "here.wgsl:3: imports <nothing>, which does not exist");
         assert_eq!(composer("#import bare"), "here.wgsl:1: cannot read `bare` as an import");
@@ -159,16 +161,25 @@ mod tests {
     #[test]
     fn a_cycle_is_an_error() {
         let slots = text_slots(&[("a", "#import <b>"), ("b", "#import <a>")]);
-        let mut composer =
-            Composer { slots: &slots, done: HashSet::new(), open: Vec::new(), text: String::new(), origins: vec![] };
-        let error = composer.append("root.wgsl", "#import <a>").unwrap_err();
+        let sources = ShaderSources::default();
+        let error = Composer::new(&sources, &slots).append("root.wgsl", "#import <a>").unwrap_err();
         assert!(matches!(error, ShaderError::CyclicImport { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_replaced_file_is_what_importers_get() {
+        let mut sources = ShaderSources::default();
+        sources.insert("color/srgb.wgsl", "fn srgb_from_linear(linear: vec3f) -> vec3f { return linear; }".into());
+        let composed = compose(&sources, "color/encode_srgb.wgsl", &Slots::new()).unwrap();
+        assert!(composed.text.contains("return linear;") && !composed.text.contains("1.055"));
+        assert_eq!(composed.files(), BTreeSet::from(["color/encode_srgb.wgsl", "color/srgb.wgsl"]));
+        assert_eq!(composed.origin(1), Some(("color/srgb.wgsl", 1)));
     }
 
     #[test]
     fn an_error_in_wgsl_names_the_original_line() {
         let slots = text_slots(&[("types", "struct A { x: f32 }\nfn broken() -> f32 { return nonsense; }")]);
-        let composed = compose("pass/background.wgsl", &slots).unwrap();
+        let composed = compose(&ShaderSources::default(), "pass/background.wgsl", &slots).unwrap();
         let error = composed.parse().unwrap_err().to_string();
         assert!(error.starts_with("<types>:2: "), "{error}");
     }

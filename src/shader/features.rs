@@ -7,7 +7,7 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TextureUse {
     pub uv_set: u8,
-    /// Index into the material's distinct samplers.
+    /// Index into the distinct samplers of the textures that are read.
     pub sampler: u8,
     /// Whether the coordinates are transformed at all.
     pub transformed: bool,
@@ -75,16 +75,20 @@ impl MaterialFeatures {
             AlphaMode::Mask { .. } => Alpha::Mask,
             AlphaMode::Blend => Alpha::Blend,
         };
-        let samplers = material_samplers(material, scene);
+        let mut samplers: Vec<Sampler> = Vec::new();
         let mut features = Self { shading, alpha, double_sided: material.double_sided, textures: [None; _] };
         for (slot, texture) in material.textures() {
             if !features.reads(slot, material, primitive) {
                 continue;
             }
             let sampler = scene.textures[texture.texture].sampler;
+            let index = samplers.iter().position(|&other| other == sampler).unwrap_or(samplers.len());
+            if index == samplers.len() {
+                samplers.push(sampler);
+            }
             features.textures[slot as usize] = Some(TextureUse {
                 uv_set: texture.uv_set as u8,
-                sampler: samplers.iter().position(|&other| other == sampler).unwrap_or(0) as u8,
+                sampler: index as u8,
                 transformed: texture.transform != UvTransform::IDENTITY,
             });
         }
@@ -113,19 +117,19 @@ impl MaterialFeatures {
         TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.texture(slot)?)))
     }
 
-    /// How many of the material's samplers are bound: up to the highest in use.
+    /// How many samplers are bound.
     pub fn sampler_count(&self) -> u32 {
         self.textures().map(|(_, texture)| u32::from(texture.sampler) + 1).max().unwrap_or(0)
     }
 }
 
-/// The distinct samplers among the textures of a material, in slot order.
-pub fn material_samplers(material: &Material, scene: &Scene) -> Vec<Sampler> {
+/// The samplers that are bound, in the order of [`TextureUse::sampler`].
+pub fn material_samplers(features: &MaterialFeatures, material: &Material, scene: &Scene) -> Vec<Sampler> {
     let mut samplers = Vec::new();
-    for (_, texture) in material.textures() {
-        let sampler = scene.textures[texture.texture].sampler;
-        if !samplers.contains(&sampler) {
-            samplers.push(sampler);
+    for (slot, texture) in features.textures() {
+        // Samplers are numbered as they are first met.
+        if let (true, Some(source)) = (usize::from(texture.sampler) == samplers.len(), material.texture(slot)) {
+            samplers.push(scene.textures[source.texture].sampler);
         }
     }
     samplers

@@ -20,7 +20,7 @@ pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, material_texture_binding,
 };
 pub use modules::{DisplayFeatures, background_module, display_module, forward_module};
-pub use sources::SOURCES;
+pub use sources::{SOURCES, ShaderSources};
 
 /// Makes a wgpu module of composed WGSL, with errors at the original file and line.
 pub fn create_module(

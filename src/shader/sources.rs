@@ -1,5 +1,7 @@
 //! The WGSL files, embedded.
 
+use std::collections::BTreeMap;
+
 macro_rules! sources {
     ($($path:literal),* $(,)?) => {
         /// Every file under `shaders/`: its path there, and its text.
@@ -53,7 +55,22 @@ sources![
     "surface/surface.wgsl",
 ];
 
-/// The text of a file under `shaders/`.
-pub(super) fn source(path: &str) -> Option<&'static str> {
-    SOURCES.iter().find(|(name, _)| *name == path).map(|(_, text)| *text)
+/// What imports find: the embedded files, any of which may be replaced, to try out a change without a build or to plant a
+/// fault in a test.
+#[derive(Debug, Clone, Default)]
+pub struct ShaderSources {
+    replaced: BTreeMap<String, String>,
+}
+
+impl ShaderSources {
+    /// Replaces or adds the file at `path` under `shaders/`.
+    pub fn insert(&mut self, path: &str, text: String) {
+        self.replaced.insert(path.to_owned(), text);
+    }
+
+    /// The text of a file.
+    pub fn get(&self, path: &str) -> Option<&str> {
+        let embedded = || SOURCES.iter().find(|(name, _)| *name == path).map(|(_, text)| *text);
+        self.replaced.get(path).map(String::as_str).or_else(embedded)
+    }
 }

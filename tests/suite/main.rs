@@ -1,7 +1,11 @@
 //! One test binary for all that needs the whole crate: each test binary links wgpu.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod cli;
 mod frames;
 mod goldens;
+mod lit_plane;
+mod mutants;
+mod shaders;
 mod support;
+mod twins;

@@ -11,9 +11,10 @@ use specula::reference::color::to_srgb8;
 use specula::reference::{ReferenceOptions, render};
 use specula::renderer::Renderer;
 use specula::scene::{
-    Background, Camera, Environment, Light, LightKind, Material, Mesh, Node, Projection, RadianceImage, Scene, ToneMap,
-    View, shapes,
+    Background, Camera, Environment, EnvironmentMaps, Light, LightKind, Material, Mesh, Node, Projection,
+    RadianceImage, Scene, ToneMap, View, shapes,
 };
+use specula::shader::ShaderSources;
 use std::path::{Path, PathBuf};
 
 /// A device for a test; every test opens its own, so that an error belongs to it.
@@ -117,8 +118,20 @@ pub(crate) fn import(path: &Path) -> Scene {
 /// Uploads, draws and reads back; fails on any message of the driver or of wgpu.
 pub(crate) fn draw(gpu: &Gpu, scene: &Scene, view: &View, options: CaptureOptions) -> CapturedFrame {
     let maps = scene.environment.as_ref().map(|e| environment::bake(&e.image, &Default::default(), &Silent));
-    let mut renderer = Renderer::new(&gpu.device, &gpu.queue);
-    let mut uploaded = renderer.upload(&gpu.device, &gpu.queue, scene, maps.as_ref()).unwrap();
+    draw_with(gpu, ShaderSources::default(), scene, maps.as_ref(), view, options)
+}
+
+/// [`draw`] with shaders of one's own and an environment that was baked before.
+pub(crate) fn draw_with(
+    gpu: &Gpu,
+    shaders: ShaderSources,
+    scene: &Scene,
+    maps: Option<&EnvironmentMaps>,
+    view: &View,
+    options: CaptureOptions,
+) -> CapturedFrame {
+    let mut renderer = Renderer::with_shaders(&gpu.device, &gpu.queue, shaders);
+    let mut uploaded = renderer.upload(&gpu.device, &gpu.queue, scene, maps).unwrap();
     let target = CaptureTarget::new(gpu, view, options).unwrap();
     let wanted = Wanted { radiance: true, display: true };
     let frame = submit(gpu, &mut renderer, &mut uploaded, view, &target, wanted).unwrap();

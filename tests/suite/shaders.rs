@@ -1,0 +1,150 @@
+//! Composed modules against the bind-group layouts they are drawn with: no binding without use, no use without binding.
+
+use glam::{Vec2, Vec3, Vec4};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use specula::gpu::bindings::{background_entries, display_entries, frame_entries, material_entries};
+use specula::scene::{
+    AlphaMode, Material, Primitive, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap, Topology, UvTransform,
+};
+use specula::shader::{
+    Composed, DisplayFeatures, ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
+    VertexFeatures, background_module, display_module, forward_module,
+};
+use std::collections::BTreeMap;
+use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
+
+/// Every set of texture slots under every kind of light, with the other switches running through their values.
+pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
+    let scene = Scene {
+        textures: vec![
+            Texture { image: 0, sampler: Sampler::default() },
+            Texture { image: 0, sampler: Sampler { mag_linear: false, ..Default::default() } },
+        ],
+        ..Default::default()
+    };
+    let of_slots = |slots: u32| {
+        let (material, primitive) = (material(slots), primitive(slots));
+        [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
+            let scene_features = SceneFeatures { punctual, environment };
+            let features = MaterialFeatures::of(&material, &primitive, &scene, scene_features.is_lit());
+            ForwardFeatures {
+                scene: scene_features,
+                material: features,
+                vertex: VertexFeatures::of(&features, &primitive),
+                energy_compensation: slots % 5 != 0,
+                topology: Topology::Triangles,
+            }
+        })
+    };
+    (0..1 << TextureSlot::ALL.len()).flat_map(of_slots).collect()
+}
+
+fn material(slots: u32) -> Material {
+    let mut material = Material { metallic: 0.5, emissive_nits: Vec3::ONE, ..Default::default() };
+    for (index, slot) in (0..).zip(TextureSlot::ALL).filter(|(index, _)| slots >> index & 1 == 1) {
+        let transform = UvTransform { offset: Vec2::splat((index % 3) as f32), ..UvTransform::IDENTITY };
+        material.set_texture(slot, Some(TextureRef { texture: index % 2, uv_set: index as u32 % 2, transform }));
+    }
+    material.double_sided = slots.is_multiple_of(2);
+    material.unlit = slots.is_multiple_of(11);
+    material.alpha_mode = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend][slots as usize % 3];
+    material
+}
+
+fn primitive(slots: u32) -> Primitive {
+    Primitive {
+        topology: Topology::Triangles,
+        positions: vec![Vec3::ZERO; 3],
+        normals: Some(vec![Vec3::Y; 3]),
+        tangents: Some(vec![Vec4::X; 3]),
+        uvs: vec![vec![Vec2::ZERO; 3]; 2],
+        colors: slots.is_multiple_of(7).then(|| vec![Vec4::ONE; 3]),
+        indices: vec![0, 1, 2],
+        material: 0,
+    }
+}
+
+/// Every display shader.
+pub(crate) fn display_features() -> Vec<DisplayFeatures> {
+    let tone_maps = [ToneMap::Neutral, ToneMap::Aces, ToneMap::AgX, ToneMap::Reinhard, ToneMap::Linear, ToneMap::None];
+    let both = |tone_map| [true, false].map(|encode_srgb| DisplayFeatures { tone_map, encode_srgb });
+    tone_maps.into_iter().flat_map(both).collect()
+}
+
+/// Group and binding, and what is bound there for which stages.
+type Bindings = BTreeMap<(u32, u32), (&'static str, ShaderStages)>;
+
+/// The bindings that the entry points of a module reach.
+fn used(composed: &Composed) -> Bindings {
+    let module = composed.parse().unwrap_or_else(|error| panic!("{error}\n{}", composed.text));
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+    let mut bindings = Bindings::new();
+    for (index, entry_point) in module.entry_points.iter().enumerate() {
+        let stage = match entry_point.stage {
+            naga::ShaderStage::Vertex => ShaderStages::VERTEX,
+            naga::ShaderStage::Fragment => ShaderStages::FRAGMENT,
+            other => panic!("{other:?} entry point in a frame"),
+        };
+        for (handle, variable) in module.global_variables.iter() {
+            let Some(at) = &variable.binding else { continue };
+            if info.get_entry_point(index)[handle].is_empty() {
+                continue;
+            }
+            let kind = kind_of_variable(&module, variable);
+            let (_, stages) = bindings.entry((at.group, at.binding)).or_insert((kind, ShaderStages::NONE));
+            *stages |= stage;
+        }
+    }
+    bindings
+}
+
+fn kind_of_variable(module: &naga::Module, variable: &naga::GlobalVariable) -> &'static str {
+    match (variable.space, &module.types[variable.ty].inner) {
+        (naga::AddressSpace::Uniform, _) => "uniform",
+        (naga::AddressSpace::Storage { access }, _) if !access.contains(naga::StorageAccess::STORE) => "storage",
+        (_, naga::TypeInner::Sampler { comparison: false }) => "sampler",
+        (_, naga::TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, .. }) => "texture",
+        other => panic!("no layout binds {other:?} yet"),
+    }
+}
+
+/// The bindings that layouts offer, group by group.
+fn offered(groups: &[Vec<BindGroupLayoutEntry>]) -> Bindings {
+    let kind = |entry: &BindGroupLayoutEntry| match entry.ty {
+        BindingType::Buffer { ty: BufferBindingType::Uniform, .. } => "uniform",
+        BindingType::Buffer { ty: BufferBindingType::Storage { read_only: true }, .. } => "storage",
+        BindingType::Sampler(_) => "sampler",
+        BindingType::Texture { .. } => "texture",
+        other => panic!("no shader takes {other:?} yet"),
+    };
+    let of_group = |(group, entries): (u32, &Vec<BindGroupLayoutEntry>)| {
+        entries.iter().map(|entry| ((group, entry.binding), (kind(entry), entry.visibility))).collect::<Vec<_>>()
+    };
+    (0..).zip(groups).flat_map(of_group).collect()
+}
+
+#[test]
+fn forward_modules_use_all_that_is_bound_and_nothing_else() {
+    let mut compared = 0;
+    for features in forward_features() {
+        let used = used(&forward_module(&ShaderSources::default(), &features).unwrap());
+        let mut offered = offered(&[frame_entries(features.scene), material_entries(&features.material)]);
+        if features.material.shading == Shading::Unlit {
+            // Group 0 is the scene's: an unlit surface among lit ones leaves its light alone.
+            offered.retain(|(group, binding), _| *group > 0 || used.contains_key(&(0, *binding)));
+        }
+        assert_eq!(used, offered, "{features}");
+        compared += used.len();
+    }
+    println!("{compared} bindings compared");
+    assert!(compared > 512 * 3, "{compared}");
+}
+
+#[test]
+fn the_other_passes_use_all_that_is_bound_and_nothing_else() {
+    let sources = ShaderSources::default();
+    assert_eq!(used(&background_module(&sources).unwrap()), offered(&[background_entries()]));
+    for features in display_features() {
+        assert_eq!(used(&display_module(&sources, features).unwrap()), offered(&[display_entries()]), "{features:?}");
+    }
+}
