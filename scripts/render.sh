@@ -16,9 +16,10 @@ picture=
 if [ $# -eq 0 ]; then
     picture=$root/out/showcase.png
     mkdir -p "$root/out"
-    set -- "$root/assets/showcase.glb" -o "$picture"
+    set -- "$root/assets/showcase.glb" --camera 0 --size 1280x960 -o "$picture"
 fi
-cargo run --quiet --release --manifest-path "$root/Cargo.toml" -- render "$@"
+cargo build --release --manifest-path "$root/Cargo.toml"
+"$root/target/release/specula" render "$@"
 if [ -n "$picture" ]; then
     echo "The picture is $picture"
 fi

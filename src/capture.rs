@@ -138,6 +138,13 @@ pub fn submit(
 }
 
 impl PendingFrame {
+    /// Waits until the frame is drawn, but not for its way back.
+    pub fn wait_drawn(&self, gpu: &Gpu) -> Result<(), CaptureError> {
+        let poll = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        poll.map_err(|error| GpuError::Failed(format!("waiting for the frame: {error}")))?;
+        Ok(gpu.check()?)
+    }
+
     /// Waits for the frame.
     pub fn wait(self, gpu: &Gpu) -> Result<CapturedFrame, CaptureError> {
         let display = self.display.map(|readback| readback.wait(gpu)).transpose()?;
@@ -151,7 +158,10 @@ impl PendingFrame {
             }
         };
         let (width, height) = (self.width, self.height);
-        Ok(CapturedFrame { radiance: radiance.map(|bytes| RadianceImage { width, height, texels: texels(bytes) }), display })
+        Ok(CapturedFrame {
+            radiance: radiance.map(|bytes| RadianceImage { width, height, texels: texels(bytes) }),
+            display,
+        })
     }
 }
 

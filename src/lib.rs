@@ -2,9 +2,12 @@
 
 pub mod bake;
 pub mod capture;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod frame;
 pub mod gpu;
 pub mod gpu_scene;
+pub mod import;
 pub mod math;
 pub mod passes;
 pub mod progress;

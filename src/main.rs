@@ -1,1 +1,5 @@
-fn main() {}
+//! The `specula` program.
+
+fn main() -> std::process::ExitCode {
+    specula::cli::main()
+}

@@ -224,7 +224,12 @@ fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
 }
 
 /// The ray direction is affine in the picture plane, so three corners of it give the whole map.
-fn background_uniform(camera: &Camera, view: &View, environment_from_world: DMat3, radiance_scale: f32) -> BackgroundUniform {
+fn background_uniform(
+    camera: &Camera,
+    view: &View,
+    environment_from_world: DMat3,
+    radiance_scale: f32,
+) -> BackgroundUniform {
     let size = view.size_px.as_dvec2();
     let direction = |ndc: DVec2| {
         let pixel = DVec2::new((ndc.x + 1.0) * 0.5, (1.0 - ndc.y) * 0.5) * size;
@@ -232,8 +237,7 @@ fn background_uniform(camera: &Camera, view: &View, environment_from_world: DMat
         environment_from_world * (along / along.dot(camera.forward_in_world()))
     };
     let center = direction(DVec2::ZERO);
-    let direction_from_ndc =
-        DMat3::from_cols(direction(DVec2::X) - center, direction(DVec2::Y) - center, center);
+    let direction_from_ndc = DMat3::from_cols(direction(DVec2::X) - center, direction(DVec2::Y) - center, center);
     BackgroundUniform {
         direction_from_ndc: [direction_from_ndc.x_axis, direction_from_ndc.y_axis, direction_from_ndc.z_axis]
             .map(|column| column.extend(0.0).as_vec4().to_array()),

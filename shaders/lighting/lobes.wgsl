@@ -9,6 +9,8 @@
 
 // Below this a punctual light's highlight is a few pixels of f32 noise, and D overflows half floats.
 const ALPHA_MIN: f32 = 1e-3;
+// A direction of view behind the shading normal is lifted to this cosine: the lobes keep their albedo at silhouettes.
+const NOV_MIN: f32 = 1e-4;
 // Smallest loss that the 16-bit table can tell from zero.
 const LOSS_MIN: f32 = 1.5e-5;
 
@@ -38,7 +40,8 @@ struct Lobes {
 
 fn make_lobes(surface: Surface) -> Lobes {
     let r = surface.perceptual_roughness;
-    let NoV = clamp(dot(surface.n, surface.v), 1e-4, 1.0);
+    let v = normalize(surface.v + surface.n * max(NOV_MIN - dot(surface.n, surface.v), 0.0));
+    let NoV = clamp(dot(surface.n, v), NOV_MIN, 1.0);
     let table = dfg(r, NoV);
     let E = table.x + table.y;
     let E_avg = table.z + table.w;
@@ -49,7 +52,7 @@ fn make_lobes(surface: Surface) -> Lobes {
 
     var lobes: Lobes;
     lobes.n = surface.n;
-    lobes.v = surface.v;
+    lobes.v = v;
     lobes.NoV = NoV;
     lobes.perceptual_roughness = r;
     lobes.alpha = max(r * r, ALPHA_MIN);

@@ -15,7 +15,9 @@ const LEVELS: usize = 9;
 
 /// Interior sides of the tiles of a large panorama, texels. Level 0 is as sharp as the panorama. The others follow the
 /// lobe, so that bilinear lookup cuts its peak over a sun by 4 % at most at level 1, 1.5 % at level 2 and 1 % above.
-const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 256, 128, 128, 64, 64, 64, 64];
+/// The rough ones are finer than that asks for: a large flat surface magnifies them until the creases of bilinear lookup
+/// show, and they fit into room that the atlas has anyway.
+const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 256, 128, 128, 128, 128, 128, 64];
 
 /// No tile has a smaller interior.
 const SMALLEST_SIDE: u32 = 32;

@@ -37,7 +37,8 @@ impl GpuEnvironment {
         environment: &Environment,
         maps: &EnvironmentMaps,
     ) -> Result<Self, UploadError> {
-        let (atlas, scale) = upload(device, queue, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
+        let (atlas, scale) =
+            upload(device, queue, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
         let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
         let intensity = environment.intensity;
         let mut tiles = [[0.0; 4]; 9];

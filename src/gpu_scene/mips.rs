@@ -159,7 +159,8 @@ mod tests {
     use super::*;
 
     fn image(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Image {
-        let bytes: Vec<u8> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| texel(x, y)).collect();
+        let bytes: Vec<u8> =
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| texel(x, y)).collect();
         Image { name: None, width, height, pixels: Pixels::Rgba8(bytes.into()) }
     }
 
@@ -195,7 +196,8 @@ mod tests {
     fn normals_stay_unit_vectors() {
         let bumps = image(2, 2, |x, _| if x == 0 { [255, 128, 128, 255] } else { [128, 128, 255, 255] });
         let level = &chain(&bumps, Role::Normal, true, 4096)[1];
-        let n = Vec3::new(f32::from(level.bytes[0]), f32::from(level.bytes[1]), f32::from(level.bytes[2])) / 127.5 - 1.0;
+        let n =
+            Vec3::new(f32::from(level.bytes[0]), f32::from(level.bytes[1]), f32::from(level.bytes[2])) / 127.5 - 1.0;
         assert!((n.length() - 1.0).abs() < 0.01, "{n}");
     }
 
@@ -203,7 +205,10 @@ mod tests {
     fn levels_above_the_limit_are_left_out() {
         let large = image(16, 8, |_, _| [7, 7, 7, 255]);
         let levels = chain(&large, Role::Data, true, 4);
-        assert_eq!(levels.iter().map(|level| (level.width, level.height)).collect::<Vec<_>>(), [(4, 2), (2, 1), (1, 1)]);
+        assert_eq!(
+            levels.iter().map(|level| (level.width, level.height)).collect::<Vec<_>>(),
+            [(4, 2), (2, 1), (1, 1)]
+        );
         assert_eq!(chain(&large, Role::Data, false, 4).len(), 1);
         assert_eq!(chain(&large, Role::Data, false, 16).len(), 1);
     }

@@ -84,7 +84,8 @@ fn upload(
         Pixels::Rgba8(_) if role.is_srgb() => formats::COLOR_TEXTURE,
         Pixels::Rgba8(_) => formats::DATA_TEXTURE,
     };
-    let extent = |level: &mips::Level| wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 };
+    let extent =
+        |level: &mips::Level| wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: image.name.as_deref(),
         size: extent(&levels[0]),

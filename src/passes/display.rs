@@ -59,10 +59,7 @@ impl DisplayPipelines {
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("display"),
             layout: &self.layout,
-            entries: &[
-                entry(0, uniform.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(radiance)),
-            ],
+            entries: &[entry(0, uniform.as_entire_binding()), entry(1, wgpu::BindingResource::TextureView(radiance))],
         });
         Ok(DisplayPass { group, pipeline })
     }

@@ -121,8 +121,11 @@ fn create_pipeline(
         bind_group_layouts: &[Some(&scene.frame_layout), material_layout],
         immediate_size: 0,
     });
-    let vertex_attributes: Vec<[wgpu::VertexAttribute; 1]> =
-        attributes(&key.features.vertex).iter().enumerate().map(|(location, a)| [vertex_attribute(location, a.wgsl)]).collect();
+    let vertex_attributes: Vec<[wgpu::VertexAttribute; 1]> = attributes(&key.features.vertex)
+        .iter()
+        .enumerate()
+        .map(|(location, a)| [vertex_attribute(location, a.wgsl)])
+        .collect();
     let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> =
         vertex_attributes.iter().map(|attribute| Some(buffer_layout(attribute))).collect();
     let blended = key.features.material.alpha == Alpha::Blend;

@@ -66,8 +66,14 @@ impl Interface {
     }
 }
 
-/// Cosines of view below this count as this (docs/model.md).
+/// Directions of view below this cosine are lifted to it (docs/model.md).
 pub const SMALLEST_NOV: f64 = 1e-4;
+
+/// `view`, or the nearest direction that is not behind the shading normal.
+pub fn lift_view(normal: DVec3, view: DVec3) -> DVec3 {
+    let missing = SMALLEST_NOV - normal.dot(view);
+    if missing > 0.0 { (view + missing * normal).normalize() } else { view }
+}
 
 impl<'a> Bsdf<'a> {
     /// `normal` is the shading normal and `view` points away from the surface; both are unit vectors in one frame.
@@ -79,6 +85,7 @@ impl<'a> Bsdf<'a> {
         energy_compensation: bool,
     ) -> Self {
         let r = material.perceptual_roughness;
+        let view = lift_view(normal, view);
         let NoV = normal.dot(view).clamp(SMALLEST_NOV, 1.0);
         let (dfg_v, dfg_avg) = (table.dfg(r, NoV), table.average(r));
         let (E_v, E_avg) = (dfg_v.albedo(), dfg_avg.albedo());

@@ -3,7 +3,7 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use super::albedo::DirectionalAlbedo;
-use super::bsdf::{Bsdf, SMALLEST_NOV};
+use super::bsdf::{Bsdf, lift_view};
 use super::environment::EnvironmentSampler;
 use super::lights;
 use super::sampling::{
@@ -50,6 +50,7 @@ impl<'a> Lighting<'a> {
         if surface.unlit {
             return surface.material.base_color;
         }
+        let view = lift_view(surface.normal_in_world, view);
         let bsdf = Bsdf::new(&self.albedo, surface.material, surface.normal_in_world, view, self.energy_compensation);
         surface.emissive_nits
             + self.radiance_from_lights(surface, &bsdf)
@@ -84,7 +85,7 @@ impl<'a> Lighting<'a> {
 struct Techniques<'a> {
     world_from_local: DMat3,
     local_from_world: DMat3,
-    /// The view in the local frame, lifted above the horizon if need be: sampling may use any view that sees the surface.
+    /// The view in the local frame, above the horizon.
     view: DVec3,
     alpha: f64,
     environment: Option<&'a EnvironmentSampler>,
@@ -95,9 +96,7 @@ impl<'a> Techniques<'a> {
         let (b1, b2) = orthonormal_basis(normal);
         let world_from_local = DMat3::from_cols(b1, b2, normal);
         let local_from_world = world_from_local.transpose();
-        let mut view = local_from_world * view;
-        view.z = view.z.max(SMALLEST_NOV);
-        Self { world_from_local, local_from_world, view: view.normalize(), alpha, environment }
+        Self { world_from_local, local_from_world, view: local_from_world * view, alpha, environment }
     }
 
     /// One direction in world space of each technique.
@@ -201,14 +200,13 @@ mod tests {
 
     #[test]
     fn views_below_the_horizon_of_the_shading_normal_converge_too() {
-        // n.v = -0.1, as on silhouettes of coarse meshes. The model has a narrow peak around l = -v there, where the half
-        // vector turns fast; no technique aims at it. Measured 1.5e-2, and a third of it with 8 times the samples.
+        // n.v = -0.1, as on silhouettes of coarse meshes: the view is lifted to the horizon.
         let worst = worst_error(DVec3::new(-0.5, 0.1, 0.2));
-        assert!(worst < 3e-2, "{worst:e}");
+        // Measured 3.9e-4; margin 2.
+        assert!(worst < 8e-4, "{worst:e}");
     }
 
     #[test]
-    #[ignore = "known fault of the model: n.v is clamped but h is not, and a white body is dark where n.v < 0"]
     fn white_bodies_vanish_where_the_shading_normal_faces_away_too() {
         let constant = Environment::new(EnvironmentImage::constant(Vec3::ONE));
         let scene = Scene { environment: Some(constant), ..Scene::default() };
@@ -219,7 +217,7 @@ mod tests {
         let view = DVec3::new(1.0, 0.0, -0.1).normalize();
         let estimate = |i| lighting.radiance(&surface, view, &[0, 1, 2].map(|d| sampler.pair(i, d)));
         let mean = (0..count).map(estimate).sum::<DVec3>() / f64::from(count);
-        // Measured 0.09. With v lifted to n.v = 1e-4 before h is formed it would be 1.
+        // 0.09 if h were formed with the view that is not lifted.
         assert!((mean - 1.0).abs().max_element() < 1e-2, "{mean}");
     }
 

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// How a reference picture is made.
 #[derive(Clone, Copy)]
 pub struct ReferenceOptions<'a> {
-    /// Samples a pixel, at least 1; powers of two are stratified best.
+    /// Samples a pixel, at least 1; a single one lies in the middle. Powers of two are stratified best.
     pub samples: u32,
     /// The same seed gives the same picture.
     pub seed: u64,
@@ -61,8 +61,9 @@ impl Tracer<'_> {
         let sampler = PixelSampler::new(options.seed, x, y);
         let corner = DVec2::new(f64::from(x), f64::from(y));
         let samples = options.samples.max(1);
-        let sum: DVec4 =
-            (0..samples).map(|index| self.sample(corner + sampler.pair(index, PIXEL_DIMENSION), &sampler, index)).sum();
+        // A single sample is where a rasteriser takes it.
+        let place = |index| if samples == 1 { DVec2::splat(0.5) } else { sampler.pair(index, PIXEL_DIMENSION) };
+        let sum: DVec4 = (0..samples).map(|index| self.sample(corner + place(index), &sampler, index)).sum();
         sum / f64::from(samples)
     }
 

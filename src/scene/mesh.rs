@@ -33,7 +33,7 @@ pub struct Primitive {
     /// Unit vectors. `None` only for points and lines, which are then drawn unlit (glTF 2.0, 3.7.2.1).
     pub normals: Option<Vec<Vec3>>,
     /// xyz: unit tangent toward +u; w: +1 or -1, the sign of the bitangent `cross(normal, tangent.xyz) * w`.
-    /// Present whenever the material has a normal texture.
+    /// Present whenever the material has a normal texture and there are normals.
     pub tangents: Option<Vec<Vec4>>,
     /// Texture coordinate sets, `TEXCOORD_0` first.
     pub uvs: Vec<Vec<Vec2>>,

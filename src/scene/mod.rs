@@ -5,6 +5,7 @@
 
 mod camera;
 mod environment;
+pub mod framing;
 mod image;
 mod light;
 mod material;
@@ -126,6 +127,19 @@ impl Scene {
         let place = |(node, world_from_node): (usize, DMat4)| {
             let light = self.nodes[node].light?;
             Some(self.lights[light].in_world(&world_from_node))
+        };
+        self.world_transforms().into_iter().filter_map(place).collect()
+    }
+
+    /// Every camera of the scene where its node puts it; scale and shear of the node have no effect.
+    pub fn cameras_in_world(&self) -> Vec<Camera> {
+        let place = |(node, world_from_node): (usize, DMat4)| {
+            let camera = &self.cameras[self.nodes[node].camera?];
+            let eye = world_from_node.transform_point3(DVec3::ZERO);
+            let [backward, up] = [DVec3::Z, DVec3::Y].map(|axis| world_from_node.transform_vector3(axis));
+            let target = eye - backward.normalize_or(DVec3::Z);
+            let rigid = Camera::look_at(eye, target, up, camera.projection, camera.near_m, camera.far_m);
+            Some(Camera { name: camera.name.clone(), ..rigid })
         };
         self.world_transforms().into_iter().filter_map(place).collect()
     }

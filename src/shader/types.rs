@@ -116,8 +116,11 @@ gpu_struct! {
     }
 }
 
-/// Every struct's name, WGSL declaration, field offsets and size.
-pub const ALL: &[(&str, &str, &[(&str, usize)], usize)] = &[
+/// A struct's name, its WGSL declaration, the offsets of its fields, and its size.
+pub type Declaration = (&'static str, &'static str, &'static [(&'static str, usize)], usize);
+
+/// Every struct.
+pub const ALL: &[Declaration] = &[
     ("FrameUniform", FrameUniform::WGSL, FrameUniform::FIELDS, size_of::<FrameUniform>()),
     ("Instance", Instance::WGSL, Instance::FIELDS, size_of::<Instance>()),
     ("Light", Light::WGSL, Light::FIELDS, size_of::<Light>()),

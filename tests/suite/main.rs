@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod architecture;
+mod cli;
 mod frames;
+mod goldens;
 mod lit_plane;
 mod mutants;
 mod shaders;

@@ -5,13 +5,17 @@ use specula::bake::environment;
 use specula::capture::{CaptureOptions, CaptureTarget, CapturedFrame, Wanted, submit};
 use specula::gpu::formats::Precision;
 use specula::gpu::{Gpu, GpuOptions, GpuRequest};
+use specula::import::model_from_path;
 use specula::progress::Silent;
+use specula::reference::color::to_srgb8;
+use specula::reference::{ReferenceOptions, render};
 use specula::renderer::Renderer;
 use specula::scene::{
-    Background, Camera, Environment, EnvironmentMaps, Light, LightKind, Material, Mesh, Node, Projection, Scene,
-    ToneMap, View, shapes,
+    Background, Camera, Environment, EnvironmentMaps, Light, LightKind, Material, Mesh, Node, Projection,
+    RadianceImage, Scene, ToneMap, View, shapes,
 };
 use specula::shader::ShaderSources;
+use std::path::{Path, PathBuf};
 
 /// A device for a test; every test opens its own, so that an error belongs to it.
 pub(crate) fn gpu(precision: Precision) -> Gpu {
@@ -55,6 +59,60 @@ pub(crate) fn front_view(side_px: u32) -> View {
 
 pub(crate) fn white_environment() -> Environment {
     Environment::new(specula::scene::EnvironmentImage::constant(Vec3::ONE))
+}
+
+/// The CPU reference of the same picture.
+pub(crate) fn trace(scene: &Scene, view: &View, samples: u32) -> RadianceImage {
+    render(scene, view, &ReferenceOptions { samples, seed: 0, progress: &Silent })
+}
+
+/// Root mean square difference over root mean square of `expected`, in linear radiance, where both cover the pixel
+/// fully. Fails when that is nowhere.
+pub(crate) fn relative_rms(actual: &RadianceImage, expected: &RadianceImage) -> f64 {
+    assert_eq!((actual.width, actual.height), (expected.width, expected.height));
+    let both = actual.texels.iter().zip(&expected.texels).filter(|(a, b)| a.w > 0.999 && b.w > 0.999);
+    let (mut difference, mut power, mut count) = (0.0, 0.0, 0);
+    for (a, b) in both {
+        let (a, b) = (a.truncate().as_dvec3(), b.truncate().as_dvec3());
+        difference += (a - b).length_squared();
+        power += b.length_squared();
+        count += 1;
+    }
+    assert!(count > 500, "only {count} pixels are covered");
+    assert!(power > 0.0, "the expected picture is black");
+    (difference / power).sqrt()
+}
+
+/// Writes both pictures and eight times their difference to `target/failures`, for a person to look at.
+pub(crate) fn leave_pictures(name: &str, view: &View, actual: &RadianceImage, expected: &RadianceImage) {
+    let [a, b] = [actual, expected].map(|image| to_srgb8(image, view));
+    let difference: Vec<u8> = a
+        .chunks_exact(4)
+        .zip(b.chunks_exact(4))
+        .flat_map(|(a, b)| [0, 1, 2].map(|c| a[c].abs_diff(b[c]).saturating_mul(8)).into_iter().chain([255]))
+        .collect();
+    std::fs::create_dir_all("target/failures").unwrap();
+    for (kind, pixels) in [("actual", a), ("expected", b), ("difference", difference)] {
+        let picture = image::RgbaImage::from_raw(actual.width, actual.height, pixels).unwrap();
+        picture.save(format!("target/failures/{name}-{kind}.png")).unwrap();
+    }
+    println!("{name}: see target/failures/{name}-*.png");
+}
+
+/// The sample models, or `None` (printed) where they are not; under CI=true they must be there.
+pub(crate) fn samples() -> Option<PathBuf> {
+    let root = std::env::var_os("SPECULA_SAMPLES").map_or_else(|| PathBuf::from("../shared/samples"), PathBuf::from);
+    if root.join("models").is_dir() {
+        return Some(root);
+    }
+    assert!(std::env::var_os("CI").is_none_or(|ci| ci != "true"), "{} has no sample models", root.display());
+    println!("skipped: no sample models at {}", root.display());
+    None
+}
+
+/// Imports a model; warnings are fine.
+pub(crate) fn import(path: &Path) -> Scene {
+    model_from_path(path, &Default::default()).unwrap().scene
 }
 
 /// Uploads, draws and reads back; fails on any message of the driver or of wgpu.

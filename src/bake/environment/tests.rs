@@ -210,7 +210,7 @@ fn lookups_do_not_jump_where_the_chart_is_cut() {
 #[test]
 fn tile_sides_follow_the_panorama_within_their_limits() {
     let sides = |width, max_side| tile_sides(width, &BakeOptions { max_side });
-    assert_eq!(sides(1024, 1024), [512, 512, 256, 128, 128, 64, 64, 64, 64]);
+    assert_eq!(sides(1024, 1024), [512, 512, 256, 128, 128, 128, 128, 128, 64]);
     assert_eq!(sides(16384, 1024)[0], 1024);
     assert_eq!(sides(4, 1024), [32, 64, 64, 64, 64, 64, 64, 64, 64]);
     assert_eq!(sides(4096, 300)[0], 256);

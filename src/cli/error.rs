@@ -1,0 +1,34 @@
+//! One line for each failure, and its exit code.
+
+use crate::capture::CaptureError;
+use crate::gpu::GpuError;
+use crate::import::ImportError;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum CliError {
+    #[error("{0}")]
+    Usage(String),
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    #[error("{0}; install one (scripts/setup.sh), or leave out --require-gpu to use the CPU reference renderer")]
+    NoAdapter(GpuError),
+    #[error("{path}: cannot write: {reason}", path = .path.display())]
+    Write { path: PathBuf, reason: String },
+    #[error("{0}")]
+    CheckFailed(String),
+}
+
+impl CliError {
+    pub(super) fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::CheckFailed(_) => 1,
+            Self::NoAdapter(_) => 3,
+            Self::Usage(_) | Self::Import(_) | Self::Capture(_) | Self::Write { .. } => 2,
+        })
+    }
+}

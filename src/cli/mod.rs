@@ -1,0 +1,46 @@
+//! The command line. Results go to stdout, everything else to stderr.
+
+mod bake;
+mod camera;
+mod environment;
+mod error;
+mod output;
+mod progress;
+mod render;
+mod stats;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Real-time, physically based glTF renderer: measurably accurate, and a scene pays only for what it uses.
+#[derive(Debug, Parser)]
+#[command(name = "specula", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render a model to a picture.
+    Render(Box<render::RenderArgs>),
+    /// Regenerate the tables that are part of the program.
+    Bake(bake::BakeArgs),
+}
+
+/// Runs the program with the arguments of the process.
+///
+/// Exit codes: 0 done; 1 a check failed; 2 bad usage, unreadable input or a GPU error; 3 no usable adapter.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Render(args) => render::run(&args),
+        Command::Bake(args) => bake::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("specula: {error}");
+            error.exit_code()
+        }
+    }
+}

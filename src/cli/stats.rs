@@ -1,0 +1,73 @@
+//! What a render did, for `--stats` and `--json`.
+
+use serde::Serialize;
+use std::time::Instant;
+
+/// Everything that is known about one rendered picture.
+#[derive(Debug, Serialize)]
+pub(super) struct RenderStats {
+    /// Name and version of this layout.
+    pub(super) schema: &'static str,
+    pub(super) specula: &'static str,
+    pub(super) model: String,
+    pub(super) output: String,
+    /// `gpu` or `reference`.
+    pub(super) renderer: &'static str,
+    /// None for the reference renderer.
+    pub(super) adapter: Option<AdapterStats>,
+    pub(super) size_px: [u32; 2],
+    /// Samples a pixel.
+    pub(super) samples: u32,
+    pub(super) gpu: Option<GpuStats>,
+    pub(super) milliseconds: Vec<Stage>,
+    pub(super) warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct AdapterStats {
+    pub(super) name: String,
+    pub(super) kind: String,
+    pub(super) backend: String,
+    pub(super) driver: String,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct GpuStats {
+    pub(super) draws: u32,
+    pub(super) triangles: u64,
+    /// The features of each distinct forward pipeline.
+    pub(super) pipelines: Vec<String>,
+    pub(super) geometry_bytes: u64,
+    pub(super) texture_bytes: u64,
+    pub(super) environment_bytes: u64,
+    /// What the scene has, and so what the shaders contain.
+    pub(super) punctual_lights: u32,
+    pub(super) environment: bool,
+}
+
+/// The time that one stage took.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct Stage {
+    pub(super) stage: &'static str,
+    pub(super) milliseconds: f64,
+}
+
+/// Measures stages one after another.
+#[derive(Debug, Default)]
+pub(super) struct Stopwatch {
+    stages: Vec<Stage>,
+}
+
+impl Stopwatch {
+    /// Runs `work` and books its time under `stage`.
+    pub(super) fn time<T>(&mut self, stage: &'static str, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        self.stages.push(Stage { stage, milliseconds: start.elapsed().as_secs_f64() * 1e3 });
+        result
+    }
+
+    pub(super) fn stages(self) -> Vec<Stage> {
+        self.stages
+    }
+}

@@ -1,0 +1,243 @@
+//! Files to plain data: glTF 2.0 models and environment panoramas.
+//!
+//! Everything a file says is checked here, once, so that a [`Scene`] needs no checks. No bytes make these functions
+//! panic; memory is bounded by [`Limits`], time grows linearly with the file. Nothing outside the model's folder is
+//! read. What is wrong is an [`ImportError`] of one line that names the place; what is ignored or replaced is a
+//! [`Warning`].
+
+mod accessor;
+mod buffers;
+mod cameras;
+mod container;
+mod document;
+mod environment;
+mod error;
+mod extensions;
+mod geometry;
+mod images;
+mod lights;
+mod limits;
+mod materials;
+mod nodes;
+mod normals;
+mod references;
+mod resources;
+mod tangents;
+#[cfg(test)]
+mod tests;
+mod textures;
+mod topology;
+mod vertices;
+
+pub use environment::{environment_from_path, environment_from_slice};
+pub use error::{ImportError, Place, Warning};
+pub use extensions::SUPPORTED_EXTENSIONS;
+pub use limits::Limits;
+
+use crate::progress::{Progress, Silent};
+use crate::scene::{Material, Mesh, Primitive, Scene};
+use accessor::Accessors;
+use buffers::Buffers;
+use document::Document;
+use error::{Fault, Notes};
+use gltf::json::Root;
+use limits::Budget;
+use rayon::prelude::*;
+use resources::Resources;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Which scene of a file is meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SceneChoice {
+    Index(usize),
+    Name(String),
+}
+
+/// How a model is imported.
+#[derive(Clone)]
+pub struct ImportOptions<'a> {
+    /// `None` takes the file's default scene, or the first.
+    pub scene: Option<SceneChoice>,
+    pub limits: Limits,
+    /// Told of the stages "read", "decode images" and "build geometry".
+    pub progress: &'a dyn Progress,
+}
+
+impl Default for ImportOptions<'_> {
+    fn default() -> Self {
+        Self { scene: None, limits: Limits::default(), progress: &Silent }
+    }
+}
+
+impl std::fmt::Debug for ImportOptions<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ImportOptions")
+            .field("scene", &self.scene)
+            .field("limits", &self.limits)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A model as imported.
+#[derive(Debug)]
+pub struct Imported {
+    pub scene: Scene,
+    pub warnings: Vec<Warning>,
+    /// The names of all scenes of the file, in its order.
+    pub scene_names: Vec<Option<String>>,
+    /// Which of them this is; `None` if the file has no scenes and all its nodes were taken.
+    pub scene_index: Option<usize>,
+}
+
+/// Imports a .gltf or .glb file. Files it refers to are read if they lie in its folder or below.
+///
+/// # Errors
+/// When the file or a part of it that the picture needs cannot be read, breaks the specification, is over a limit, or
+/// requires an extension that is not supported.
+pub fn model_from_path(path: &Path, options: &ImportOptions<'_>) -> Result<Imported, ImportError> {
+    let source_name = path.display().to_string();
+    options.progress.begin("read", 0);
+    let bytes = read_file(path, options.limits.decoded_bytes).map_err(|fault| fault.in_file(&source_name))?;
+    import_named(&bytes, &source_name, Some(path.parent().unwrap_or(Path::new(""))), options)
+}
+
+/// Imports the bytes of a .gltf or .glb file. `source_name` stands for them in messages; `base_dir` is the folder that
+/// uris are relative to, `None` if only data URIs may be followed.
+///
+/// # Errors
+/// As [`model_from_path`].
+pub fn model_from_slice(
+    bytes: &[u8],
+    source_name: &str,
+    base_dir: Option<&Path>,
+    options: &ImportOptions<'_>,
+) -> Result<Imported, ImportError> {
+    options.progress.begin("read", 0);
+    import_named(bytes, source_name, base_dir, options)
+}
+
+fn import_named(
+    bytes: &[u8],
+    source_name: &str,
+    base_dir: Option<&Path>,
+    options: &ImportOptions<'_>,
+) -> Result<Imported, ImportError> {
+    let mut notes = Notes::default();
+    let model = import_model(bytes, base_dir, options, &mut notes).map_err(|fault| fault.in_file(source_name))?;
+    Ok(Imported { warnings: notes.in_file(source_name), ..model })
+}
+
+/// The bytes of a file of at most `limit` bytes.
+fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Fault> {
+    let unreadable = |error: std::io::Error| {
+        Fault::of_file(format!("cannot be read: {error}"), "check the path and its permissions")
+    };
+    let file = File::open(path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > limit {
+        return Err(Fault::of_file(format!("is larger than {limit} bytes"), "raise the limit on decoded bytes"));
+    }
+    Ok(bytes)
+}
+
+fn import_model(
+    bytes: &[u8],
+    base_dir: Option<&Path>,
+    options: &ImportOptions<'_>,
+    notes: &mut Notes,
+) -> Result<Imported, Fault> {
+    let budget = Budget::new(options.limits.decoded_bytes);
+    let resources = Resources::new(base_dir, &budget);
+    let container = container::split(bytes, notes)?;
+    let document = document::parse(container.json, container.json_offset, notes)?;
+    references::check(&document)?;
+    note_what_does_not_move(&document, notes);
+
+    let root = &document.root;
+    let lights = lights::import(root, notes)?;
+    let nodes = nodes::import(root, lights.len(), notes)?;
+    let chosen = nodes::choose_scene(root, &nodes, options.scene.as_ref(), notes)?;
+    let cameras = cameras::import(root, notes)?;
+    let mut materials = materials::import(root, notes)?;
+    let textures = textures::collect(root, &mut materials, &used_materials(root), notes)?;
+    if root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| primitive.material.is_none()) {
+        materials.push(Material::default());
+    }
+
+    let buffers = Buffers::load(root, container.binary, &resources)?;
+    let accessors = Accessors { root, buffers: &buffers, budget: &budget, limits: &options.limits };
+    let images = images::import(&accessors, &resources, &textures.images, options.progress)?;
+    let meshes = build_meshes(&accessors, &materials, options.progress, notes)?;
+    let scene = Scene {
+        name: chosen.name,
+        nodes,
+        roots: chosen.roots,
+        meshes,
+        materials,
+        textures: textures.textures,
+        images,
+        cameras,
+        lights,
+        environment: None,
+    };
+    let scene_names = root.scenes.iter().map(|scene| scene.name.clone()).collect();
+    Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index })
+}
+
+/// Which materials a primitive has.
+fn used_materials(root: &Root) -> Vec<bool> {
+    let mut used = vec![false; root.materials.len()];
+    let materials = root.meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(|primitive| primitive.material);
+    materials.for_each(|material| used[material.value()] = true);
+    used
+}
+
+/// All meshes of the document. Primitives without a material have the last of `materials`.
+fn build_meshes(
+    accessors: &Accessors<'_>,
+    materials: &[Material],
+    progress: &dyn Progress,
+    notes: &mut Notes,
+) -> Result<Vec<Mesh>, Fault> {
+    let root = accessors.root;
+    let jobs: Vec<(usize, usize)> =
+        root.meshes.iter().enumerate().flat_map(|(m, mesh)| (0..mesh.primitives.len()).map(move |p| (m, p))).collect();
+    progress.begin("build geometry", jobs.len() as u64);
+    let build = |&(m, p): &(usize, usize)| -> Result<(Option<Primitive>, Notes), Fault> {
+        let json = &root.meshes[m].primitives[p];
+        let material = json.material.map_or(materials.len() - 1, |material| material.value());
+        let mut notes = Notes::default();
+        let here = format!("/meshes/{m}/primitives/{p}");
+        let primitive = geometry::build(accessors, json, &here, (material, &materials[material]), &mut notes);
+        progress.advance(1);
+        Ok((primitive?, notes))
+    };
+    let built: Vec<_> = jobs.par_iter().map(build).collect();
+
+    let mut meshes: Vec<Mesh> =
+        root.meshes.iter().map(|json| Mesh { name: json.name.clone(), primitives: Vec::new() }).collect();
+    for (&(m, _), built) in jobs.iter().zip(built) {
+        let (primitive, later) = built?;
+        notes.append(later);
+        meshes[m].primitives.extend(primitive);
+    }
+    Ok(meshes)
+}
+
+/// Animations, skins and morph targets are shown in their rest pose.
+fn note_what_does_not_move(document: &Document, notes: &mut Notes) {
+    let root = &document.root;
+    if document.animations.as_array().is_some_and(|animations| !animations.is_empty()) {
+        notes.add("/animations", "animations are not played yet");
+    }
+    if let Some(node) = root.nodes.iter().position(|node| node.skin.is_some() && node.mesh.is_some()) {
+        notes.add(format_args!("/nodes/{node}/skin"), "skins are not applied yet; the mesh is shown in its bind pose");
+    }
+    let morphs = |mesh: &gltf::json::Mesh| mesh.primitives.iter().any(|primitive| primitive.targets.is_some());
+    if let Some(mesh) = root.meshes.iter().position(morphs) {
+        notes.add(format_args!("/meshes/{mesh}"), "morph targets are not applied yet; the base mesh is shown");
+    }
+}

@@ -1,0 +1,14 @@
+//! Tests of the importer, on small files made in memory and on the sample models.
+
+mod accessors;
+mod builder;
+mod environments;
+mod geometry;
+mod hostile;
+mod images;
+mod materials;
+mod mutants;
+mod nodes;
+mod resources;
+mod samples;
+mod tangents;

@@ -1,0 +1,134 @@
+//! The program as its users start it.
+
+use crate::support::samples;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const SHOWCASE: &str = "assets/showcase.glb";
+
+fn specula(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_specula")).args(arguments).output().unwrap()
+}
+
+/// stderr without what the driver says on its own.
+fn stderr(output: &Output) -> String {
+    let text = String::from_utf8_lossy(&output.stderr);
+    text.lines().filter(|line| !line.contains("XDG_RUNTIME_DIR")).map(|line| format!("{line}\n")).collect()
+}
+
+fn assert_fails(arguments: &[&str], code: i32, expected: &str) {
+    let output = specula(arguments);
+    let error = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    assert!(error.contains(expected), "{arguments:?}: {error:?} does not say {expected:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?}: stdout is not empty");
+}
+
+#[test]
+fn a_picture_is_written_and_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let [png, exr, stats] = ["a.png", "a.exr", "a.json"].map(|name| folder.path().join(name).display().to_string());
+    let output = specula(&["render", SHOWCASE, "-o", &png, "--size", "80x60", "--stats", &stats]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(image::open(&png).unwrap().to_rgba8().dimensions(), (80, 60));
+    let stats: serde_json::Value = serde_json::from_slice(&std::fs::read(&stats).unwrap()).unwrap();
+    assert!(stats["gpu"]["draws"].as_u64() > Some(10) && stats["adapter"]["name"].is_string(), "{stats}");
+    for stage in ["decode", "environment bake", "device", "upload", "pipelines", "first frame", "readback", "encode"] {
+        let mut stages = stats["milliseconds"].as_array().unwrap().iter();
+        assert!(stages.any(|entry| entry["stage"] == stage), "{stage} is missing in {stats}");
+    }
+
+    let output = specula(&["render", SHOWCASE, "-o", &exr, "--size", "80x60", "--json", "--precision", "float"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["renderer"], "gpu");
+    assert!(std::fs::read(&exr).unwrap().starts_with(&[0x76, 0x2f, 0x31, 0x01]), "no OpenEXR file");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+}
+
+#[test]
+fn models_and_pictures_go_through_pipes() {
+    let model = std::fs::File::open(SHOWCASE).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_specula"))
+        .args(["render", "-", "-o", "-", "--size", "40x30", "--background", "transparent"])
+        .stdin(Stdio::from(model))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let picture = image::load_from_memory(&output.stdout).unwrap().to_rgba8();
+    assert_eq!(picture.dimensions(), (40, 30));
+}
+
+#[test]
+fn without_an_adapter_the_reference_draws() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("a.png").display().to_string();
+    let run = |more: &[&str]| {
+        let arguments = ["render", SHOWCASE, "-o", &out, "--size", "32x24", "--samples", "4"];
+        Command::new(env!("CARGO_BIN_EXE_specula"))
+            .args(arguments.iter().chain(more))
+            .env("VK_DRIVER_FILES", "/nonexistent")
+            .env("VK_ICD_FILENAMES", "/nonexistent")
+            .env("WGPU_BACKEND", "vulkan")
+            .output()
+            .unwrap()
+    };
+    let output = run(&[]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the CPU reference renderer draws instead"), "{}", stderr(&output));
+    assert_eq!(image::open(&out).unwrap().to_rgba8().dimensions(), (32, 24));
+    let output = run(&["--require-gpu"]);
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+}
+
+#[test]
+fn mistakes_get_one_line_and_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("a.png").display().to_string();
+    let broken = folder.path().join("broken.glb");
+    std::fs::write(&broken, b"glTF\x02\0\0\0").unwrap();
+    let broken = broken.display().to_string();
+    let render = |model, more: &[&'static str]| {
+        let base = vec!["render", model, "-o", &out, "--size", "16x16"];
+        base.into_iter().chain(more.iter().copied()).collect::<Vec<&str>>()
+    };
+    assert_fails(&render("no/such.glb", &[]), 2, "no/such.glb");
+    assert_fails(&render(&broken, &[]), 2, "broken.glb: ");
+    assert_fails(&render(SHOWCASE, &["--camera", "nobody"]), 2, "no such camera");
+    assert_fails(&render(SHOWCASE, &["--scene", "nowhere"]), 2, "nowhere");
+    assert_fails(&render(SHOWCASE, &["--env", "no.hdr"]), 2, "no.hdr");
+    assert_fails(&render(SHOWCASE, &["--orbit", "1,2,-3"]), 2, "RADIUS");
+    assert_fails(&render(SHOWCASE, &["--fov", "180"]), 2, "--fov");
+    assert_fails(&render(SHOWCASE, &["--msaa", "3"]), 2, "samples");
+    assert_fails(&render(SHOWCASE, &["--adapter", "no such adapter", "--require-gpu"]), 3, "no such adapter");
+    assert_fails(&["render", SHOWCASE, "-o", "a.bmp"], 2, "a.bmp");
+    assert_fails(&["render", SHOWCASE, "-o", "-", "--json"], 2, "stdout");
+    assert!(!Path::new(&out).exists());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "something was left behind");
+}
+
+#[test]
+fn the_embedded_tables_are_what_bake_makes() {
+    assert!(specula(&["bake", "--check"]).status.success());
+}
+
+#[test]
+fn every_used_shader_is_dumped() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("a.png").display().to_string();
+    let dump = folder.path().join("wgsl");
+    let dump_text = dump.display().to_string();
+    let output = specula(&["render", SHOWCASE, "-o", &out, "--size", "16x16", "--dump-wgsl", &dump_text]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let names: Vec<String> =
+        std::fs::read_dir(dump).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    assert!(names.iter().any(|name| name == "forward+lit+environment.wgsl"), "{names:?}");
+    assert!(names.iter().any(|name| name == "display+neutral.wgsl"), "{names:?}");
+}
+
+#[test]
+fn unsupported_samples_say_what_they_need() {
+    let Some(root) = samples() else { return };
+    let model = root.join("models/heart_draco.glb").display().to_string();
+    assert_fails(&["render", &model, "-o", "x.png"], 2, "KHR_draco_mesh_compression");
+}
