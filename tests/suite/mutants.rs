@@ -84,9 +84,10 @@ const IN_FUNCTIONS: &[Mutant] = &[
     fault("color/tone_map_neutral.wgsl", "min(exposed.x,", "max(exposed.x,"),
 ];
 
-/// Faults in the lighting, which need a frame to show.
+/// Faults in lighting and surfaces, which need a frame to show.
 const IN_FRAMES: &[Mutant] = &[
     fault("lighting/lobes.wgsl", "max(r * r, ALPHA_MIN)", "max(r, ALPHA_MIN)"),
+    fault("lighting/lobes.wgsl", "max(NOV_MIN - dot(surface.n, surface.v), 0.0)", "0.0"),
     fault("lighting/lobes.wgsl", "(1.0 - surface.metallic) * (1.0 - E_s)", "(1.0 - surface.metallic)"),
     fault("lighting/lobes.wgsl", "(lobes.diffuse_norm * passed)", "lobes.diffuse_norm"),
     fault("lighting/lobes.wgsl", "(lobes.multiscatter_norm * loss)", "lobes.multiscatter_norm"),
@@ -112,11 +113,34 @@ const IN_FRAMES: &[Mutant] = &[
     fault("lighting/environment.wgsl", "to_environment * lobes.n", "lobes.n"),
     fault("lighting/environment.wgsl", "level - f32(lower)", "0.0"),
     fault("lighting/environment.wgsl", " * environment.radiance_scale", ""),
+    fault("lighting/lit.wgsl", " * surface.occlusion", ""),
+    fault("lighting/lit.wgsl", " + surface.emissive", ""),
+    fault("surface/surface.wgsl", "metallic_roughness.z", "metallic_roughness.x"),
+    fault("surface/surface.wgsl", "metallic_roughness.y", "metallic_roughness.x"),
+    fault("surface/surface.wgsl", "specular_texel(v).w", "specular_texel(v).x"),
+    fault("surface/surface.wgsl", " * specular_color_texel(v).xyz", ""),
+    fault("surface/surface.wgsl", "occlusion_texel(v).x", "occlusion_texel(v).y"),
+    fault("surface/surface.wgsl", "material.occlusion_strength * ", ""),
+    fault("surface/surface.wgsl", " * emissive_texel(v).xyz", ""),
+    fault("surface/surface.wgsl", " * vertex_color(v)", ""),
+    fault("surface/normal_map.wgsl", "xyz * 2.0 - 1.0", "xyz * 2.0"),
+    fault("surface/normal_map.wgsl", " * v.tangent.w", ""),
+    fault("surface/normal_map.wgsl", " * material.normal_scale", ""),
+    fault("surface/normal_map.wgsl", "cross(v.normal, v.tangent.xyz)", "cross(v.tangent.xyz, v.normal)"),
+    fault("surface/facing_double.wgsl", "select(-n, n, front_facing)", "n"),
 ];
 
-/// Files whose faults [`IN_FRAMES`] must show, beside those of the twins.
-const LIGHTING: [&str; 4] =
-    ["lighting/dfg.wgsl", "lighting/environment.wgsl", "lighting/lobes.wgsl", "lighting/punctual.wgsl"];
+/// Files that need a frame to be tested and have faults in [`IN_FRAMES`].
+const SEEN_IN_FRAMES: [&str; 8] = [
+    "lighting/dfg.wgsl",
+    "lighting/environment.wgsl",
+    "lighting/lit.wgsl",
+    "lighting/lobes.wgsl",
+    "lighting/punctual.wgsl",
+    "surface/facing_double.wgsl",
+    "surface/normal_map.wgsl",
+    "surface/surface.wgsl",
+];
 
 impl Mutant {
     fn sources(&self) -> ShaderSources {
@@ -177,5 +201,5 @@ fn twins_reject_every_planted_fault() {
 fn frames_reject_every_planted_fault() {
     let gpu = gpu(Precision::Float);
     let planes = planes();
-    all_are_rejected(IN_FRAMES, LIGHTING.into_iter(), |mutant| mutant.rejecting_plane(&gpu, &planes));
+    all_are_rejected(IN_FRAMES, SEEN_IN_FRAMES.into_iter(), |mutant| mutant.rejecting_plane(&gpu, &planes));
 }
