@@ -184,7 +184,7 @@ fn upload_dfg(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
     let format = formats::dfg_table(device.features());
     let table = dfg::embedded();
     let halves: Vec<half::f16>;
-    let bytes: &[u8] = if format == wgpu::TextureFormat::Rgba16Float {
+    let bytes: &[u8] = if formats::is_half_float(format) {
         halves = table.iter().map(|&value| half::f16::from_f32(f32::from(value) / 65535.0)).collect();
         bytemuck::cast_slice(&halves)
     } else {

@@ -90,7 +90,7 @@ mod tests {
         let (table, integrator) = (embedded(), DfgIntegrator::default());
         let (mut worst, mut square_sum, count): (f64, f64, u32) = (0.0, 0.0, 4000);
         for i in 0..count {
-            // Additive recurrence of the plastic number (Roberts 2018): even cover of roughness and cosine.
+            // Additive recurrence of the plastic number (Roberts 2018): even cover of both arguments.
             let r = 0.045 + 0.955 * (0.754_877_666_246_692_8 * f64::from(i)).fract();
             let t = (0.569_840_290_998_053_2 * f64::from(i)).fract();
             // A quarter of the points even in log(NoV): grazing angles matter.

@@ -43,6 +43,11 @@ pub fn dfg_table(features: wgpu::Features) -> TextureFormat {
     }
 }
 
+/// Whether the channels of a 16-bit format are half floats and not fractions of 65535.
+pub fn is_half_float(format: TextureFormat) -> bool {
+    format == TextureFormat::Rgba16Float
+}
+
 /// Whether a target of this format applies the sRGB transfer by itself.
 pub fn encodes_srgb(format: TextureFormat) -> bool {
     format.is_srgb()

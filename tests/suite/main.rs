@@ -1,6 +1,7 @@
 //! One test binary for all that needs the whole crate: each test binary links wgpu.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
+mod architecture;
 mod cli;
 mod frames;
 mod goldens;

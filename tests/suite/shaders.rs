@@ -31,7 +31,7 @@ pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
                 scene: scene_features,
                 material: features,
                 vertex: VertexFeatures::of(&features, &primitive),
-                energy_compensation: slots % 5 != 0,
+                energy_compensation: !slots.is_multiple_of(5),
                 topology: Topology::Triangles,
             }
         })

@@ -29,7 +29,7 @@ fn disc_mean(image: &RadianceImage, radius: f64) -> DVec3 {
 
 #[test]
 fn white_spheres_vanish_in_a_constant_environment() {
-    // Nothing can be seen of a body that reflects all light, whatever its roughness: the white furnace.
+    // Nothing can be seen of a body that reflects all light, whatever its perceptual roughness: the white furnace.
     for (metallic, perceptual_roughness) in [(1.0, 0.05), (1.0, 0.4), (1.0, 1.0), (0.0, 0.1), (0.0, 1.0), (0.5, 0.6)] {
         let material = material!(metallic: metallic, perceptual_roughness: perceptual_roughness);
         let mut scene = scene_of(sphere(32), material);
