@@ -17,3 +17,7 @@ pub mod scene;
 pub mod shader;
 
 pub use {glam, wgpu};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

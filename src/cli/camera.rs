@@ -1,14 +1,10 @@
 //! Flags that place the camera.
 
 use super::error::CliError;
-use crate::scene::framing::{Framing, frame_scene, orbit_direction};
+use crate::scene::framing::{DEFAULT_FOV_RAD, DEFAULT_ORBIT_RAD, Framing, frame_scene, orbit_direction};
 use crate::scene::{Camera, Projection, Scene};
 use glam::{DVec3, UVec2};
 use std::str::FromStr;
-
-/// The view that shows most of most models: a little from the right and from above.
-const DEFAULT_ORBIT_DEGREES: (f64, f64) = (25.0, 75.0);
-const DEFAULT_FOV_DEGREES: f64 = 35.0;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Camera")]
@@ -107,10 +103,9 @@ impl CameraArgs {
         if self.camera != "auto" {
             return self.camera_of_file(scene);
         }
-        let fov_y_rad = self.fov.unwrap_or(DEFAULT_FOV_DEGREES).to_radians();
-        let (theta, phi) = DEFAULT_ORBIT_DEGREES;
-        let default =
-            Orbit { theta_rad: theta.to_radians(), phi_rad: phi.to_radians(), radius: Radius::OfFraming(1.0) };
+        let fov_y_rad = self.fov.map_or(DEFAULT_FOV_RAD, f64::to_radians);
+        let (theta_rad, phi_rad) = DEFAULT_ORBIT_RAD;
+        let default = Orbit { theta_rad, phi_rad, radius: Radius::OfFraming(1.0) };
         let orbit = self.orbit.unwrap_or(default);
         let direction = orbit_direction(orbit.theta_rad, orbit.phi_rad);
         let framing = frame_scene(scene, direction, fov_y_rad, size_px);

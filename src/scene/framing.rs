@@ -1,7 +1,13 @@
 //! Cameras that show a whole scene.
 
-use super::{Camera, Projection, Scene};
-use glam::{DVec2, DVec3, UVec2};
+use super::{Background, Camera, Projection, Scene, ToneMap, View};
+use glam::{DVec2, DVec3, UVec2, Vec3};
+use std::f64::consts::PI;
+
+/// The orbit that shows most of most models, a little from the right and from above: theta and phi in radians.
+pub const DEFAULT_ORBIT_RAD: (f64, f64) = (25.0 * PI / 180.0, 75.0 * PI / 180.0);
+/// Vertical field of view of a framed picture, radians: long enough not to distort.
+pub const DEFAULT_FOV_RAD: f64 = 35.0 * PI / 180.0;
 
 /// Empty margin around a framed scene, as a fraction of the picture on each side.
 const MARGIN: f64 = 0.05;
@@ -81,6 +87,24 @@ pub fn frame_scene(scene: &Scene, toward_camera: DVec3, fov_y_rad: f64, size_px:
     frame_points(points.into_iter(), toward_camera, fov_y_rad, size_px)
         .or_else(|| frame_points(ball.into_iter(), toward_camera, fov_y_rad, size_px))
         .unwrap_or(Framing { target: DVec3::ZERO, distance_m: 3.0, height_m: 2.0, radius_m: 1.0 })
+}
+
+/// A picture of the whole scene from the default orbit, on dark grey.
+pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
+    let (theta_rad, phi_rad) = DEFAULT_ORBIT_RAD;
+    let direction = orbit_direction(theta_rad, phi_rad);
+    let framing = frame_scene(scene, direction, DEFAULT_FOV_RAD, size_px);
+    let eye = framing.target + direction * framing.distance_m;
+    let (near_m, far_m) = framing.near_far_m(eye);
+    let projection = Projection::Perspective { fov_y_rad: DEFAULT_FOV_RAD };
+    View {
+        camera: Camera::look_at(eye, framing.target, DVec3::Y, projection, near_m, far_m),
+        size_px,
+        exposure_ev: 0.0,
+        tone_map: ToneMap::default(),
+        background: Background::Color(Vec3::splat(0.16)),
+        energy_compensation: true,
+    }
 }
 
 impl Framing {
