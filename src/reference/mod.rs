@@ -11,6 +11,7 @@ pub mod environment;
 pub mod geometry;
 pub mod integrator;
 pub mod lights;
+pub mod microfacet;
 pub mod quadrature;
 mod render;
 pub mod sampling;
