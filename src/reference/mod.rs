@@ -10,6 +10,7 @@ pub mod color;
 pub mod environment;
 pub mod geometry;
 pub mod integrator;
+pub mod laws;
 pub mod lights;
 pub mod microfacet;
 pub mod quadrature;
