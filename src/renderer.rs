@@ -3,7 +3,7 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
-use crate::bake::dfg;
+use crate::bake::{dfg, fresnel_tail};
 use crate::frame::{FramePlan, plan};
 use crate::gpu::formats;
 use crate::gpu_scene::{GpuScene, SharedTextures, UploadError};
@@ -74,7 +74,11 @@ impl Renderer {
         });
         Self {
             sources,
-            shared: SharedTextures { dfg: upload_dfg(device, queue), clamp_sampler },
+            shared: SharedTextures {
+                dfg: upload_table(device, queue, "dfg", &dfg::embedded(), dfg::SIZE),
+                fresnel_tail: upload_table(device, queue, "Fresnel tail", &fresnel_tail::embedded(), dfg::SIZE),
+                clamp_sampler,
+            },
             forward: ForwardPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
@@ -180,20 +184,25 @@ fn check_size(device: &wgpu::Device, view: &View) -> Result<(), RenderError> {
     if fits { Ok(()) } else { Err(RenderError::Size { width, height, allowed }) }
 }
 
-fn upload_dfg(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
-    let format = formats::dfg_table(device.features());
-    let table = dfg::embedded();
+/// A square table of unorm16.
+fn upload_table(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    table: &[u16],
+    side: usize,
+) -> wgpu::TextureView {
+    let format = formats::table(device.features(), table.len() / (side * side));
     let halves: Vec<half::f16>;
     let bytes: &[u8] = if formats::is_half_float(format) {
         halves = table.iter().map(|&value| half::f16::from_f32(f32::from(value) / 65535.0)).collect();
         bytemuck::cast_slice(&halves)
     } else {
-        bytemuck::cast_slice(&table)
+        bytemuck::cast_slice(table)
     };
-    let side = dfg::SIZE as u32;
     let descriptor = wgpu::TextureDescriptor {
-        label: Some("dfg"),
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
+        label: Some(label),
+        size: wgpu::Extent3d { width: side as u32, height: side as u32, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,

@@ -9,3 +9,8 @@ fn F_Schlick_weight(VoH: f32) -> f32 {
 fn F_Schlick(F0: vec3f, F90: f32, VoH: f32) -> vec3f {
     return F0 + (F90 - F0) * F_Schlick_weight(VoH);
 }
+
+// Cosine average of Schlick's curve, 2 int_0^1 F(x) x dx = F0 + (F90 - F0) / 21.
+fn F_Schlick_average(F0: vec3f, F90: f32) -> vec3f {
+    return F0 + (F90 - F0) * (1.0 / 21.0);
+}

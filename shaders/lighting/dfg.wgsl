@@ -3,9 +3,13 @@
 
 const DFG_SIZE: f32 = 128.0;
 
-// Split-sum pair and its cosine average: (scale, bias, scale_avg, bias_avg). Texel centres lie on the end points of
-// sqrt(cosine) and perceptual roughness, which costs a sixteenth of the texels of the usual layout.
+// Texel centres lie on the end points of sqrt(cosine) and perceptual roughness, which costs a sixteenth of the texels of
+// the usual layout.
+fn dfg_uv(perceptual_roughness: f32, cos_theta: f32) -> vec2f {
+    return (vec2f(sqrt(cos_theta), perceptual_roughness) * (DFG_SIZE - 1.0) + 0.5) / DFG_SIZE;
+}
+
+// Split-sum pair and its cosine average: (scale, bias, scale_avg, bias_avg).
 fn dfg(perceptual_roughness: f32, cos_theta: f32) -> vec4f {
-    let uv = (vec2f(sqrt(cos_theta), perceptual_roughness) * (DFG_SIZE - 1.0) + 0.5) / DFG_SIZE;
-    return textureSampleLevel(dfg_table, clamp_sampler, uv, 0.0);
+    return textureSampleLevel(dfg_table, clamp_sampler, dfg_uv(perceptual_roughness, cos_theta), 0.0);
 }

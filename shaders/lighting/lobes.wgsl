@@ -1,11 +1,10 @@
 #import "math/constants.wgsl"
-#import "brdf/d_ggx.wgsl"
-#import "brdf/v_smith_ggx_correlated.wgsl"
-#import "brdf/f_schlick.wgsl"
 #import "brdf/fd_lambert.wgsl"
 #import "lobe/albedo.wgsl"
 #import <multiscatter>
 #import "lighting/dfg.wgsl"
+#import <fresnel>
+#import <shape>
 
 // Below this a punctual light's highlight is a few pixels of f32 noise, and D overflows half floats.
 const ALPHA_MIN: f32 = 1e-3;
@@ -19,13 +18,11 @@ struct Lobes {
     n: vec3f,
     NoV: f32,
     v: vec3f,
-    alpha: f32,
-    // Schlick's curve of dielectric and metal, mixed. It is linear in F0 and F90, so mixing them is exact here.
-    F0: vec3f,
-    F90: f32,
-    // F0 scale + F90 bias at NoV: what the specular lobe returns of uniform light in one bounce.
-    single_scatter: vec3f,
     perceptual_roughness: f32,
+    shape: Shape,
+    fresnel: Fresnel,
+    // What the specular lobe returns of uniform light in one bounce.
+    single_scatter: vec3f,
     // F_ms (1 - E(NoV)), dielectric and metal computed apart and then mixed: F_ms is not linear in F0.
     multiscatter: vec3f,
     multiscatter_norm: f32,
@@ -47,18 +44,17 @@ fn make_lobes(surface: Surface) -> Lobes {
     let E_avg = table.z + table.w;
 
     let dielectric_F0 = min(surface.dielectric_F0 * surface.specular_color, vec3f(1.0)) * surface.specular;
-    let dielectric_F_ms = F_multiscatter(dielectric_F0, surface.specular, E_avg);
-    let metal_F_ms = F_multiscatter(surface.base_color, 1.0, E_avg);
+    let dielectric_F_ms = F_multiscatter(F_Schlick_average(dielectric_F0, surface.specular), E_avg);
+    let metal_F_ms = F_multiscatter(metal_average(surface), E_avg);
 
     var lobes: Lobes;
     lobes.n = surface.n;
     lobes.v = v;
     lobes.NoV = NoV;
     lobes.perceptual_roughness = r;
-    lobes.alpha = max(r * r, ALPHA_MIN);
-    lobes.F0 = mix(dielectric_F0, surface.base_color, surface.metallic);
-    lobes.F90 = mix(surface.specular, 1.0, surface.metallic);
-    lobes.single_scatter = lobes.F0 * table.x + lobes.F90 * table.y;
+    lobes.shape = make_shape(surface, max(r * r, ALPHA_MIN));
+    lobes.fresnel = make_fresnel(surface, dielectric_F0);
+    lobes.single_scatter = single_scatter(lobes.fresnel, table, r, NoV);
     lobes.multiscatter = mix(dielectric_F_ms, metal_F_ms, surface.metallic) * max(1.0 - E, 0.0);
     lobes.multiscatter_norm = INV_PI / max(1.0 - E_avg, LOSS_MIN);
 
@@ -78,8 +74,8 @@ fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let half_vector = l + lobes.v;
     let h = half_vector * inverseSqrt(max(dot(half_vector, half_vector), 1e-12));
     let VoH = saturate(dot(lobes.v, h));
-    let F = F_Schlick(lobes.F0, lobes.F90, VoH);
-    let DV = D_GGX(lobes.alpha, lobes.n, h) * V_SmithGGXCorrelated(lobes.alpha, lobes.NoV, NoL);
+    let F = reflectance(lobes.fresnel, VoH);
+    let DV = D_V(lobes.shape, lobes.n, lobes.v, l, h, lobes.NoV, NoL);
 
     let table = dfg(lobes.perceptual_roughness, NoL);
     let loss = max(1.0 - table.x - table.y, 0.0);

@@ -1,11 +1,13 @@
 #import <normal>
 #import <facing>
+#import <tangents>
 
 // What a material says about one point: all that shading needs beside the lights.
 struct Surface {
     // Unit shading normal on the viewer's side, and unit vector toward the viewer.
     n: vec3f,
     v: vec3f,
+    tangents: Tangents,
     base_color: vec3f,
     alpha: f32,
     metallic: f32,
@@ -23,9 +25,11 @@ fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surfa
     let metallic_roughness = metallic_roughness_texel(v);
 
     var surface: Surface;
-    surface.n = face_viewer(shading_normal(v, toward_viewer), front_facing);
+    let n = shading_normal(v, toward_viewer);
+    surface.n = face_viewer(n, front_facing);
+    surface.tangents = read_tangents(v, n);
     surface.v = toward_viewer;
-    surface.base_color = base_color.xyz;
+    surface.base_color = saturate(base_color.xyz);
     surface.alpha = base_color.w;
     surface.metallic = saturate(material.metallic * metallic_roughness.z);
     surface.perceptual_roughness = saturate(material.perceptual_roughness * metallic_roughness.y);

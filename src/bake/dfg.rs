@@ -4,9 +4,9 @@
 //! ascending sqrt(NoV), end points on texel centres: texel (i, j) holds NoV = (i / 127)^2 and perceptual roughness j / 127.
 //! A texel is four little-endian unorm16: scale, bias, and their cosine-weighted averages, which depend on j alone.
 
+use super::table::{EmbeddedTable, decode, unorm16};
 use crate::reference::albedo::DfgIntegrator;
 use rayon::prelude::*;
-use std::path::Path;
 
 /// Rows and columns of the table.
 pub const SIZE: usize = 128;
@@ -14,6 +14,9 @@ pub const SIZE: usize = 128;
 const CHANNELS: usize = 4;
 
 static EMBEDDED: &[u8; SIZE * SIZE * CHANNELS * 2] = include_bytes!("../../assets/dfg.bin");
+
+/// The table and its file.
+pub const TABLE: EmbeddedTable = EmbeddedTable { file: "dfg.bin", bake, embedded };
 
 /// Integrates the table: `SIZE * SIZE` texels of four unorm16, row-major.
 pub fn bake() -> Vec<u16> {
@@ -31,48 +34,15 @@ fn bake_row(row: usize) -> impl Iterator<Item = u16> {
     })
 }
 
-fn unorm16(value: f64) -> u16 {
-    (value.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16
-}
-
-/// The table that is part of the library, ready for upload as `Rgba16Unorm` on a little-endian machine.
-pub fn embedded_bytes() -> &'static [u8] {
-    EMBEDDED
-}
-
 /// The table that is part of the library: `SIZE * SIZE` texels of four unorm16, row-major.
 pub fn embedded() -> Vec<u16> {
     decode(EMBEDDED)
-}
-
-fn decode(bytes: &[u8]) -> Vec<u16> {
-    bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect()
-}
-
-/// Bakes the table into a file, as `assets/dfg.bin` holds it.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn write(path: &Path) -> std::io::Result<()> {
-    let bytes: Vec<u8> = bake().into_iter().flat_map(u16::to_le_bytes).collect();
-    std::fs::write(path, bytes)
 }
 
 #[cfg(test)]
 mod tests {
     #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
     use super::*;
-
-    #[test]
-    fn the_embedded_table_is_what_a_bake_writes() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        write(file.path()).unwrap();
-        let written = decode(&std::fs::read(file.path()).unwrap());
-        assert_eq!(written.len(), embedded().len());
-        // One step: the trigonometric functions of another platform may round the other way.
-        let worst = written.iter().zip(embedded()).map(|(a, b)| a.abs_diff(b)).max();
-        assert!(worst <= Some(1), "bake the table again: {worst:?} steps of difference");
-    }
 
     /// What a bilinear texture fetch returns, in float64.
     fn fetch(table: &[u16], perceptual_roughness: f64, NoV: f64, channel: usize) -> f64 {

@@ -2,9 +2,32 @@
 
 pub mod dfg;
 pub mod environment;
+pub mod fresnel_tail;
 mod harmonics;
 mod irradiance;
 mod lobe;
 mod octahedral;
 mod panorama;
 pub mod studio;
+mod table;
+
+pub use table::EmbeddedTable;
+
+/// Every table that is part of the library.
+pub const TABLES: [EmbeddedTable; 2] = [dfg::TABLE, fresnel_tail::TABLE];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_embedded_tables_are_what_a_bake_writes() {
+        let folder = tempfile::tempdir().unwrap();
+        for table in TABLES {
+            assert!(table.worst_difference() <= 1, "{}: run `specula bake`", table.file);
+            table.write(folder.path()).unwrap();
+            let written = std::fs::read(folder.path().join(table.file)).unwrap();
+            assert_eq!(written.len(), 2 * (table.embedded)().len(), "{}", table.file);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! `specula bake`: the tables that are part of the program.
 
 use super::error::CliError;
-use crate::bake::dfg;
+use crate::bake::TABLES;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
@@ -15,15 +15,18 @@ pub(super) struct BakeArgs {
 }
 
 pub(super) fn run(args: &BakeArgs) -> Result<(), CliError> {
-    if args.check {
-        let steps = dfg::bake().iter().zip(dfg::embedded()).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(u16::MAX);
-        return match steps {
-            0 | 1 => Ok(()),
-            _ => Err(CliError::CheckFailed(format!("dfg.bin differs by {steps} steps; run `specula bake`"))),
-        };
+    for table in TABLES {
+        let path = args.out.join(table.file);
+        if args.check {
+            let steps = table.worst_difference();
+            if steps > 1 {
+                let message = format!("{} differs by {steps} steps; run `specula bake`", table.file);
+                return Err(CliError::CheckFailed(message));
+            }
+            continue;
+        }
+        table.write(&args.out).map_err(|error| CliError::Write { path: path.clone(), reason: error.to_string() })?;
+        eprintln!("specula: wrote {}", path.display());
     }
-    let path = args.out.join("dfg.bin");
-    dfg::write(&path).map_err(|error| CliError::Write { path: path.clone(), reason: error.to_string() })?;
-    eprintln!("specula: wrote {}", path.display());
     Ok(())
 }

@@ -15,7 +15,7 @@ use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::{ReferenceOptions, render as render_reference};
 use crate::renderer::Renderer;
-use crate::scene::{Background, EnvironmentMaps, RadianceImage, Scene, ToneMap, View};
+use crate::scene::{Background, EnvironmentMaps, Geometry, RadianceImage, Scene, ToneMap, View};
 use glam::{UVec2, Vec3};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -78,6 +78,9 @@ struct LookArgs {
     /// Give back the energy that single-scattering microfacets lose.
     #[arg(long, value_enum, default_value = "on")]
     energy_compensation: Switch,
+    /// How microfacets hide each other, for punctual lights.
+    #[arg(long, value_enum, default_value = "smith-correlated")]
+    geometry: GeometryArg,
 }
 
 #[derive(Debug, clap::Args)]
@@ -140,6 +143,27 @@ enum ToneMapArg {
     Reinhard,
     Linear,
     None,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum GeometryArg {
+    SmithCorrelated,
+    SmithSeparable,
+    SchlickHalfAlpha,
+    SchlickKaris,
+    SchlickLecture,
+}
+
+impl From<GeometryArg> for Geometry {
+    fn from(arg: GeometryArg) -> Self {
+        match arg {
+            GeometryArg::SmithCorrelated => Self::SmithCorrelated,
+            GeometryArg::SmithSeparable => Self::SmithSeparable,
+            GeometryArg::SchlickHalfAlpha => Self::SchlickHalfAlpha,
+            GeometryArg::SchlickKaris => Self::SchlickKaris,
+            GeometryArg::SchlickLecture => Self::SchlickLecture,
+        }
+    }
 }
 
 impl From<ToneMapArg> for ToneMap {
@@ -289,6 +313,7 @@ impl RenderArgs {
             tone_map: self.look.tone_map.into(),
             background,
             energy_compensation: self.look.energy_compensation == Switch::On,
+            geometry: self.look.geometry.into(),
         })
     }
 }

@@ -48,6 +48,7 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
                 material: drawable.material_features,
                 vertex: drawable.vertex_features,
                 energy_compensation: view.energy_compensation,
+                geometry: view.geometry,
                 topology: drawable.topology,
             };
             let cull_back = !features.material.double_sided && drawable.topology == Topology::Triangles;

@@ -13,6 +13,7 @@ pub const FRAME_SAMPLER: u32 = 3;
 pub const FRAME_LIGHTS: u32 = 4;
 pub const FRAME_ENVIRONMENT: u32 = 5;
 pub const FRAME_ATLAS: u32 = 6;
+pub const FRAME_FRESNEL_TAIL: u32 = 7;
 
 /// Group 0 of the forward pass: what the scene's light needs is bound, the rest has no binding.
 pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
@@ -31,6 +32,9 @@ pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
             buffer(FRAME_ENVIRONMENT, ShaderStages::FRAGMENT, BufferBindingType::Uniform),
             texture(FRAME_ATLAS, true),
         ]);
+    }
+    if features.is_lit() && features.fresnel_tail {
+        entries.push(texture(FRAME_FRESNEL_TAIL, true));
     }
     entries
 }

@@ -34,18 +34,20 @@ impl Precision {
     }
 }
 
-/// The split-sum table: 16-bit normalised where the device has it, else half floats (error 1e-4 instead of 4e-5).
-pub fn dfg_table(features: wgpu::Features) -> TextureFormat {
-    if features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM) {
-        TextureFormat::Rgba16Unorm
-    } else {
-        TextureFormat::Rgba16Float
+/// Tables of numbers in [0, 1] with one or four channels: 16-bit normalised where the device has it, else half floats
+/// (the split-sum table then has an error of 1e-4 instead of 4e-5).
+pub fn table(features: wgpu::Features, channels: usize) -> TextureFormat {
+    match (features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM), channels) {
+        (true, 1) => TextureFormat::R16Unorm,
+        (true, _) => TextureFormat::Rgba16Unorm,
+        (false, 1) => TextureFormat::R16Float,
+        (false, _) => TextureFormat::Rgba16Float,
     }
 }
 
 /// Whether the channels of a 16-bit format are half floats and not fractions of 65535.
 pub fn is_half_float(format: TextureFormat) -> bool {
-    format == TextureFormat::Rgba16Float
+    matches!(format, TextureFormat::R16Float | TextureFormat::Rgba16Float)
 }
 
 /// Whether a target of this format applies the sRGB transfer by itself.

@@ -5,11 +5,12 @@ use super::mips::Role;
 use super::textures::TextureCache;
 use crate::frame::Drawables;
 use crate::gpu::bindings::material_layout;
-use crate::scene::{AlphaMode, Material, Scene, TextureSlot};
+use crate::scene::{AlphaMode, Material, MetalFresnel, Scene, TextureSlot};
 use crate::shader::{
     MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, material_samplers, material_texture_binding,
     types,
 };
+use glam::Vec3;
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
 
@@ -98,6 +99,12 @@ fn uniform(material: &Material) -> types::MaterialUniform {
         uv_transforms[row] = rows.x_axis.extend(0.0).to_array();
         uv_transforms[row + 1] = rows.y_axis.extend(0.0).to_array();
     }
+    let (lazanyi_a, conductor_n, conductor_k) = match material.metal_fresnel {
+        MetalFresnel::Schlick => Default::default(),
+        MetalFresnel::Lazanyi { a } => (a, Vec3::ONE, Vec3::ZERO),
+        MetalFresnel::Conductor { n, k, a } => (a, n, k),
+    };
+    let (sin, cos) = material.anisotropy_rotation_rad.sin_cos();
     let alpha_cutoff = if let AlphaMode::Mask { cutoff } = material.alpha_mode { cutoff } else { 0.0 };
     types::MaterialUniform {
         base_color: material.base_color.to_array(),
@@ -110,6 +117,10 @@ fn uniform(material: &Material) -> types::MaterialUniform {
         normal_scale: material.normal_scale,
         occlusion_strength: material.occlusion_strength,
         alpha_cutoff,
+        anisotropy: [material.anisotropy_strength, cos, sin, 0.0],
+        lazanyi_a: lazanyi_a.to_array(),
+        conductor_n: conductor_n.to_array(),
+        conductor_k: conductor_k.to_array(),
         uv_transforms,
         ..Default::default()
     }

@@ -62,6 +62,7 @@ pub struct GpuScene {
 #[derive(Debug)]
 pub struct SharedTextures {
     pub dfg: wgpu::TextureView,
+    pub fresnel_tail: wgpu::TextureView,
     pub clamp_sampler: wgpu::Sampler,
 }
 
@@ -137,6 +138,10 @@ impl GpuScene {
         if let Some(environment) = &self.environment {
             entries.push(entry(bindings::FRAME_ENVIRONMENT, environment.uniform.as_entire_binding()));
             entries.push(entry(bindings::FRAME_ATLAS, wgpu::BindingResource::TextureView(&environment.atlas)));
+        }
+        if self.features.is_lit() && self.features.fresnel_tail {
+            let tail = wgpu::BindingResource::TextureView(&shared.fresnel_tail);
+            entries.push(entry(bindings::FRAME_FRESNEL_TAIL, tail));
         }
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("frame"),

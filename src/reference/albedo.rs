@@ -60,6 +60,26 @@ impl DfgIntegrator {
     /// light sets below the horizon, which keeps the integrand smooth. tan theta = alpha tan psi flattens the peak of D
     /// at any alpha.
     pub fn dfg(&self, perceptual_roughness: f64, NoV: f64) -> Dfg {
+        let [scale, bias] = self.integrate(perceptual_roughness, NoV, |VoH| {
+            let fresnel = (1.0 - VoH).powi(5);
+            [1.0 - fresnel, fresnel]
+        });
+        Dfg { scale, bias }
+    }
+
+    /// Albedo of the lobe with Lazanyi's term, F = VoH (1 - VoH)^6, in place of a Fresnel factor; to 1e-6.
+    pub fn fresnel_tail(&self, perceptual_roughness: f64, NoV: f64) -> f64 {
+        let [tail] = self.integrate(perceptual_roughness, NoV, |VoH| [VoH * (1.0 - VoH).powi(6)]);
+        tail
+    }
+
+    /// int f(VoH) D V NoL dl for several f at once.
+    fn integrate<const N: usize>(
+        &self,
+        perceptual_roughness: f64,
+        NoV: f64,
+        fresnel: impl Fn(f64) -> [f64; N],
+    ) -> [f64; N] {
         let alpha = alpha_from_perceptual_roughness(perceptual_roughness);
         let NoV = NoV.clamp(SMALLEST_COSINE, 1.0);
         let theta_v = NoV.acos();
@@ -68,28 +88,27 @@ impl DfgIntegrator {
         let (whole, end) = (psi(FRAC_PI_4 - 0.5 * theta_v), psi((FRAC_PI_4 + 0.5 * theta_v).min(FRAC_PI_2)));
         let inner = self.polar.nodes_with_flat_ends(0.0, whole);
         let outer = self.polar.nodes_with_flat_ends(whole, end);
-        let mut sum = Dfg { scale: 0.0, bias: 0.0 };
+        let mut sum = [0.0; N];
         for (psi, weight) in inner.chain(outer) {
             let tan_psi = psi.tan();
             let theta = (alpha * tan_psi).atan();
             let dtheta_dpsi = alpha * (1.0 + tan_psi * tan_psi) / (1.0 + (alpha * tan_psi).powi(2));
-            let ring = self.ring(alpha, NoV, theta);
+            let ring = self.ring(alpha, NoV, theta, &fresnel);
             let weight = weight * theta.sin() * dtheta_dpsi;
-            sum.scale += weight * ring.scale;
-            sum.bias += weight * ring.bias;
+            sum.iter_mut().zip(ring).for_each(|(sum, ring)| *sum += weight * ring);
         }
         sum
     }
 
     /// The integrand at one polar angle of the half vector, integrated over azimuth (both halves).
-    fn ring(&self, alpha: f64, NoV: f64, theta: f64) -> Dfg {
+    fn ring<const N: usize>(&self, alpha: f64, NoV: f64, theta: f64, fresnel: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         let (sin, NoH) = theta.sin_cos();
         let sin_v = (1.0 - NoV * NoV).sqrt();
         // n.l = 2 (v.h) (n.h) - n.v > 0, solved for the azimuth: cos phi > -cot(2 theta) cot(theta_v).
         let horizon = -NoV * (NoH * NoH - sin * sin) / (sin_v * 2.0 * sin * NoH);
         let last = if sin_v > 0.0 { horizon.clamp(-1.0, 1.0).acos() } else { PI };
         let D = D_GGX(alpha, NoH);
-        let mut ring = Dfg { scale: 0.0, bias: 0.0 };
+        let mut ring = [0.0; N];
         for (phi, weight) in self.azimuth.nodes_on(0.0, last) {
             let VoH = NoV * NoH + sin_v * sin * phi.cos();
             let NoL = 2.0 * VoH * NoH - NoV;
@@ -98,9 +117,7 @@ impl DfgIntegrator {
             }
             // dl = 4 (v.h) dh.
             let f = 2.0 * weight * D * V_SmithGGXCorrelated(alpha, NoV, NoL.min(1.0)) * NoL * 4.0 * VoH;
-            let fresnel = (1.0 - VoH).powi(5);
-            ring.scale += f * (1.0 - fresnel);
-            ring.bias += f * fresnel;
+            ring.iter_mut().zip(fresnel(VoH)).for_each(|(ring, fresnel)| *ring += f * fresnel);
         }
         ring
     }

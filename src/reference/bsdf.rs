@@ -4,10 +4,13 @@
 
 use super::albedo::DirectionalAlbedo;
 use super::brdf::{
-    D_GGX, F_KullaConty, F_Schlick, F_Schlick_average, Fd_Coupled, V_SmithGGXCorrelated,
-    alpha_from_perceptual_roughness, f_KullaConty,
+    F_KullaConty, F_Schlick, F_Schlick_average, Fd_Coupled, alpha_from_perceptual_roughness, f_KullaConty,
 };
-use glam::DVec3;
+use super::microfacet::Distribution;
+use super::microfacet::fresnel::{F_Lazanyi, F_conductor};
+use crate::math::spaces::orthonormal_basis;
+use crate::scene::{Geometry, MetalFresnel};
+use glam::{DMat3, DVec3};
 
 /// What a material comes to at a point, textures and vertex colours multiplied in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +25,35 @@ pub struct SurfaceMaterial {
     pub dielectric_f0: DVec3,
     /// F90 of the dielectric interface: its weight, in [0, 1].
     pub dielectric_f90: f64,
+    /// The base colour is its F0.
+    pub metal_fresnel: MetalFresnel,
+    /// How the microfacets are spread along the surface; `None` is the same in all directions.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// The wide direction of anisotropic microfacets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Anisotropy {
+    /// Unit vector at right angles to the normal.
+    pub tangent: DVec3,
+    /// Completes the frame; its sign does not matter to the lobe.
+    pub bitangent: DVec3,
+    /// In [0, 1]: alpha along the tangent grows to 1 with its square (KHR_materials_anisotropy).
+    pub strength: f64,
+}
+
+/// What of the shading model is a choice of the view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModelChoices {
+    pub energy_compensation: bool,
+    /// The tables of directional albedo are of the default; another geometry only changes the lobe itself.
+    pub geometry: Geometry,
+}
+
+impl Default for ModelChoices {
+    fn default() -> Self {
+        Self { energy_compensation: true, geometry: Geometry::default() }
+    }
 }
 
 /// A specular lobe's Fresnel factor and its multiple scattering.
@@ -37,10 +69,13 @@ struct Interface {
 pub struct Bsdf<'a> {
     table: &'a DirectionalAlbedo,
     material: SurfaceMaterial,
+    /// Takes world directions into the frame of tangent, bitangent and normal.
+    local_from_world: DMat3,
     normal: DVec3,
+    /// In that frame.
     view: DVec3,
-    alpha: f64,
-    NoV: f64,
+    distribution: Distribution,
+    geometry: Geometry,
     /// E(NoV) and its average.
     E_v: f64,
     E_avg: f64,
@@ -82,15 +117,19 @@ impl<'a> Bsdf<'a> {
         material: SurfaceMaterial,
         normal: DVec3,
         view: DVec3,
-        energy_compensation: bool,
+        choices: ModelChoices,
     ) -> Self {
+        let energy_compensation = choices.energy_compensation;
         let r = material.perceptual_roughness;
         let view = lift_view(normal, view);
         let NoV = normal.dot(view).clamp(SMALLEST_NOV, 1.0);
         let (dfg_v, dfg_avg) = (table.dfg(r, NoV), table.average(r));
         let (E_v, E_avg) = (dfg_v.albedo(), dfg_avg.albedo());
         let dielectric = Interface::new(material.dielectric_f0, material.dielectric_f90, E_avg, energy_compensation);
-        let metal = Interface::new(material.base_color, 1.0, E_avg, energy_compensation);
+        let mut metal = Interface::new(material.base_color, 1.0, E_avg, energy_compensation);
+        if energy_compensation {
+            metal.F_ms = F_KullaConty(metal_average(&material), E_avg);
+        }
 
         let strongest = DVec3::splat(material.dielectric_f0.max_element());
         let strongest = Interface::new(strongest, material.dielectric_f90, E_avg, energy_compensation);
@@ -99,12 +138,39 @@ impl<'a> Bsdf<'a> {
         let coupling =
             Coupling { f0, F_ms, E_s_v: E_s(dfg_v.scale, dfg_v.bias), E_s_avg: E_s(dfg_avg.scale, dfg_avg.bias) };
         let alpha = alpha_from_perceptual_roughness(r);
-        Self { table, material, normal, view, alpha, NoV, E_v, E_avg, dielectric, metal, coupling }
+        let (tangent, bitangent, distribution) = match material.anisotropy {
+            None => {
+                let (tangent, bitangent) = orthonormal_basis(normal);
+                (tangent, bitangent, Distribution::Ggx { alpha })
+            }
+            Some(Anisotropy { tangent, bitangent, strength }) => {
+                let alpha_x = alpha + (1.0 - alpha) * strength * strength;
+                (tangent, bitangent, Distribution::GgxAnisotropic { alpha_x, alpha_y: alpha, rotation_rad: 0.0 })
+            }
+        };
+        let local_from_world = DMat3::from_cols(tangent, bitangent, normal).transpose();
+        let mut view = local_from_world * view;
+        view.z = NoV;
+        let geometry = choices.geometry;
+        Self {
+            table,
+            material,
+            local_from_world,
+            normal,
+            view,
+            distribution,
+            geometry,
+            E_v,
+            E_avg,
+            dielectric,
+            metal,
+            coupling,
+        }
     }
 
     /// Alpha of the specular lobe.
     pub fn alpha(&self) -> f64 {
-        self.alpha
+        self.distribution.alphas().1
     }
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.
@@ -113,19 +179,39 @@ impl<'a> Bsdf<'a> {
         if NoL <= 0.0 {
             return DVec3::ZERO;
         }
-        let h = (light + self.view).normalize_or(self.normal);
-        let (NoH, VoH) = (self.normal.dot(h), self.view.dot(h).clamp(0.0, 1.0));
-        let single = D_GGX(self.alpha, NoH) * V_SmithGGXCorrelated(self.alpha, self.NoV, NoL);
+        let light = self.local_from_world * light;
+        let h = (light + self.view).normalize_or(DVec3::Z);
+        let VoH = self.view.dot(h).clamp(0.0, 1.0);
+        let single =
+            self.distribution.D(h) * self.geometry.visibility(&self.distribution, self.view, light.with_z(NoL));
         let dfg_l = self.table.dfg(self.material.perceptual_roughness, NoL);
         let multiple = f_KullaConty(self.E_v, dfg_l.albedo(), self.E_avg);
-        let specular =
-            |interface: &Interface| single * F_Schlick(interface.f0, interface.f90, VoH) + interface.F_ms * multiple;
+        let dielectric =
+            F_Schlick(self.dielectric.f0, self.dielectric.f90, VoH) * single + self.dielectric.F_ms * multiple;
+        let metal = metal_reflectance(&self.material, VoH) * single + self.metal.F_ms * multiple;
 
         let c = &self.coupling;
         let E_s_l = c.f0 * dfg_l.scale + self.dielectric.f90 * dfg_l.bias + c.F_ms * (1.0 - dfg_l.albedo());
         let diffuse = self.material.base_color * Fd_Coupled(c.E_s_v, E_s_l, c.E_s_avg);
 
-        (specular(&self.dielectric) + diffuse).lerp(specular(&self.metal), self.material.metallic)
+        (dielectric + diffuse).lerp(metal, self.material.metallic)
+    }
+}
+
+fn metal_reflectance(material: &SurfaceMaterial, VoH: f64) -> DVec3 {
+    match material.metal_fresnel {
+        MetalFresnel::Schlick => F_Schlick(material.base_color, 1.0, VoH),
+        MetalFresnel::Lazanyi { a } => F_Lazanyi(material.base_color, a.as_dvec3(), VoH),
+        MetalFresnel::Conductor { n, k, .. } => F_conductor(n.as_dvec3(), k.as_dvec3(), VoH),
+    }
+}
+
+/// Cosine average of the metal's curve; that of Lazanyi's term is 2 int x^2 (1 - x)^6 dx = 1/126.
+fn metal_average(material: &SurfaceMaterial) -> DVec3 {
+    let schlick = F_Schlick_average(material.base_color, 1.0);
+    match material.metal_fresnel {
+        MetalFresnel::Schlick => schlick,
+        MetalFresnel::Lazanyi { a } | MetalFresnel::Conductor { a, .. } => schlick - a.as_dvec3() / 126.0,
     }
 }
 
@@ -142,6 +228,8 @@ mod tests {
             perceptual_roughness: 0.5,
             dielectric_f0: DVec3::splat(0.04),
             dielectric_f90: 1.0,
+            metal_fresnel: Default::default(),
+            anisotropy: None,
         }
     }
 
@@ -152,7 +240,13 @@ mod tests {
     /// Albedo by product quadrature over the light; good to 1e-5 for perceptual roughness of 0.4 and above.
     fn albedo(material: SurfaceMaterial, NoV: f64, energy_compensation: bool) -> DVec3 {
         let table = DirectionalAlbedo::default();
-        let bsdf = Bsdf::new(&table, material, DVec3::Z, view(NoV), energy_compensation);
+        let bsdf = Bsdf::new(
+            &table,
+            material,
+            DVec3::Z,
+            view(NoV),
+            ModelChoices { energy_compensation, ..Default::default() },
+        );
         let (polar, azimuth) = (GaussLegendre::new(96), GaussLegendre::new(96));
         let mut sum = DVec3::ZERO;
         // NoL = x^2 spreads the nodes toward the horizon.
@@ -215,6 +309,8 @@ mod tests {
             dielectric_f0: DVec3::new(0.08, 0.02, 0.05),
             dielectric_f90: 0.8,
             perceptual_roughness: 0.37,
+            metal_fresnel: MetalFresnel::Lazanyi { a: glam::Vec3::new(1.0, 2.0, 0.5) },
+            anisotropy: Some(Anisotropy { tangent: DVec3::X, bitangent: DVec3::Y, strength: 0.7 }),
         };
         for i in 0..200 {
             let direction = |a: f64, b: f64| {
@@ -224,8 +320,8 @@ mod tests {
                 DVec3::new(sin * phi.cos(), sin * phi.sin(), z)
             };
             let (a, b) = (direction(0.754_877, 0.569_840), direction(0.618_034, 0.414_213));
-            let forth = Bsdf::new(&table, material, DVec3::Z, a, true).evaluate(b);
-            let back = Bsdf::new(&table, material, DVec3::Z, b, true).evaluate(a);
+            let forth = Bsdf::new(&table, material, DVec3::Z, a, ModelChoices::default()).evaluate(b);
+            let back = Bsdf::new(&table, material, DVec3::Z, b, ModelChoices::default()).evaluate(a);
             assert!((forth - back).length() <= 1e-12 * forth.length(), "{a} {b}: {forth} and {back}");
         }
     }
@@ -234,7 +330,7 @@ mod tests {
     fn a_perfect_mirror_interface_leaves_no_diffuse_light_and_no_nan() {
         let table = DirectionalAlbedo::default();
         let material = SurfaceMaterial { dielectric_f0: DVec3::ONE, perceptual_roughness: 0.0, ..white() };
-        let f = Bsdf::new(&table, material, DVec3::Z, view(0.5), true).evaluate(view(0.9));
+        let f = Bsdf::new(&table, material, DVec3::Z, view(0.5), ModelChoices::default()).evaluate(view(0.9));
         // Away from the mirror direction only the tail of D is left: about alpha^2.
         assert!(f.is_finite() && f.max_element() < 1e-4, "{f}");
     }

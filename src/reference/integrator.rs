@@ -3,7 +3,7 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use super::albedo::DirectionalAlbedo;
-use super::bsdf::{Bsdf, lift_view};
+use super::bsdf::{Bsdf, ModelChoices, lift_view};
 use super::environment::EnvironmentSampler;
 use super::lights;
 use super::sampling::{
@@ -24,18 +24,18 @@ pub struct Lighting<'a> {
     environment: Option<&'a Environment>,
     environment_sampler: Option<EnvironmentSampler>,
     albedo: DirectionalAlbedo,
-    energy_compensation: bool,
+    choices: ModelChoices,
 }
 
 impl<'a> Lighting<'a> {
-    pub fn new(scene: &'a Scene, energy_compensation: bool) -> Self {
+    pub fn new(scene: &'a Scene, choices: ModelChoices) -> Self {
         let environment = scene.environment.as_ref();
         Self {
             lights: scene.lights_in_world(),
             environment,
             environment_sampler: environment.and_then(EnvironmentSampler::new),
             albedo: DirectionalAlbedo::default(),
-            energy_compensation,
+            choices,
         }
     }
 
@@ -51,7 +51,7 @@ impl<'a> Lighting<'a> {
             return surface.material.base_color;
         }
         let view = lift_view(surface.normal_in_world, view);
-        let bsdf = Bsdf::new(&self.albedo, surface.material, surface.normal_in_world, view, self.energy_compensation);
+        let bsdf = Bsdf::new(&self.albedo, surface.material, surface.normal_in_world, view, self.choices);
         surface.emissive_nits
             + self.radiance_from_lights(surface, &bsdf)
             + self.radiance_from_environment(surface.normal_in_world, view, &bsdf, draws) * surface.occlusion
@@ -150,6 +150,8 @@ mod tests {
                 perceptual_roughness,
                 dielectric_f0: DVec3::splat(0.04),
                 dielectric_f90: 1.0,
+                metal_fresnel: Default::default(),
+                anisotropy: None,
             },
             emissive_nits: DVec3::ZERO,
             occlusion: 0.5,
@@ -161,7 +163,7 @@ mod tests {
     fn by_midpoints(lighting: &Lighting, surface: &Surface, view: DVec3) -> DVec3 {
         const ROWS: u32 = 512;
         let n = surface.normal_in_world;
-        let bsdf = Bsdf::new(&lighting.albedo, surface.material, n, view, true);
+        let bsdf = Bsdf::new(&lighting.albedo, surface.material, n, view, ModelChoices::default());
         let mut sum = DVec3::ZERO;
         for row in 0..ROWS {
             let v = (f64::from(row) + 0.5) / f64::from(ROWS);
@@ -177,7 +179,7 @@ mod tests {
     /// The worst relative difference between 8192 samples and brute force over several materials.
     fn worst_error(view: DVec3) -> f64 {
         let (scene, view) = (scene(), view.normalize());
-        let lighting = Lighting::new(&scene, true);
+        let lighting = Lighting::new(&scene, ModelChoices::default());
         let mut worst: f64 = 0.0;
         for (metallic, perceptual_roughness) in [(0.0, 1.0), (0.0, 0.4), (1.0, 0.4), (0.6, 0.7)] {
             let surface = surface(metallic, perceptual_roughness);
@@ -210,7 +212,7 @@ mod tests {
     fn white_bodies_vanish_where_the_shading_normal_faces_away_too() {
         let constant = Environment::new(EnvironmentImage::constant(Vec3::ONE));
         let scene = Scene { environment: Some(constant), ..Scene::default() };
-        let lighting = Lighting::new(&scene, true);
+        let lighting = Lighting::new(&scene, ModelChoices::default());
         let mut surface = Surface { normal_in_world: DVec3::Z, occlusion: 1.0, ..surface(1.0, 0.1) };
         surface.material.base_color = DVec3::ONE;
         let (sampler, count) = (PixelSampler::new(5, 0, 0), 4096);
@@ -225,7 +227,8 @@ mod tests {
     fn unlit_surfaces_show_their_base_colour() {
         let scene = scene();
         let surface = Surface { unlit: true, ..surface(0.0, 0.5) };
-        let radiance = Lighting::new(&scene, true).radiance(&surface, DVec3::Y, &[DVec2::splat(0.5); 3]);
+        let radiance =
+            Lighting::new(&scene, ModelChoices::default()).radiance(&surface, DVec3::Y, &[DVec2::splat(0.5); 3]);
         assert_eq!(radiance, surface.material.base_color);
     }
 }

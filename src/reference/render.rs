@@ -1,5 +1,6 @@
 //! The CPU renderer: primary rays, one pixel at a time, the same picture on any number of threads.
 
+use super::bsdf::ModelChoices;
 use super::geometry::Ray;
 use super::integrator::Lighting;
 use super::sampling::PixelSampler;
@@ -36,8 +37,8 @@ const DIMENSIONS_PER_LAYER: u32 = 3;
 /// Renders `scene` as docs/model.md defines it: box filter, no shadows, no interreflection.
 pub fn render(scene: &Scene, view: &View, options: &ReferenceOptions) -> RadianceImage {
     let (width, height) = (view.size_px.x, view.size_px.y);
-    let tracer =
-        Tracer { view, world: World::new(scene, view), lighting: Lighting::new(scene, view.energy_compensation) };
+    let choices = ModelChoices { energy_compensation: view.energy_compensation, geometry: view.geometry };
+    let tracer = Tracer { view, world: World::new(scene, view), lighting: Lighting::new(scene, choices) };
     options.progress.begin("reference", u64::from(height));
     let mut texels = vec![Vec4::ZERO; width as usize * height as usize];
     texels.par_chunks_mut((width as usize).max(1)).zip(0..height).for_each(|(row, y)| {

@@ -1,6 +1,6 @@
 //! What a ray sees where it hits: interpolated attributes, textures, the shading normal.
 
-use super::bsdf::SurfaceMaterial;
+use super::bsdf::{Anisotropy, SurfaceMaterial};
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
 use crate::scene::{AlphaMode, Material, Scene, TextureSlot, View};
@@ -91,6 +91,8 @@ impl<'a> World<'a> {
                 perceptual_roughness: (f64::from(material.perceptual_roughness) * metallic_roughness.y).clamp(0.0, 1.0),
                 dielectric_f0,
                 dielectric_f90,
+                metal_fresnel: material.metal_fresnel,
+                anisotropy: point.anisotropy(),
             },
             emissive_nits: material.emissive_nits.as_dvec3() * emissive,
             occlusion: 1.0 + f64::from(material.occlusion_strength) * (occlusion - 1.0),
@@ -161,29 +163,68 @@ impl Point<'_> {
         (f0 * weight, weight)
     }
 
+    /// The shading normal on the side of the viewer.
     fn shading_normal(&self) -> DVec3 {
+        let normal = self.front_normal();
+        let is_area = self.draw.primitive.topology == crate::scene::Topology::Triangles;
+        if is_area && !self.hit.front { -normal } else { normal }
+    }
+
+    /// The shading normal of the front side.
+    fn front_normal(&self) -> DVec3 {
         let geometric = self.triangle().normal().normalize_or(DVec3::Y) * self.draw.handedness;
         let Some(normals) = &self.draw.primitive.normals else { return geometric };
         // Unit vectors at the vertices, and no longer so in between: what MikkTSpace's bakers assume.
         let normal =
             self.interpolate(|vertex| (self.draw.normal_from_object * normals[vertex].as_dvec3()).normalize_or_zero());
         let smooth = normal.normalize_or(geometric);
-        let mapped = self.mapped_normal(normal).unwrap_or(smooth);
-        let is_area = self.draw.primitive.topology == crate::scene::Topology::Triangles;
-        if is_area && !self.hit.front { -mapped } else { mapped }
+        self.mapped_normal(normal).unwrap_or(smooth)
+    }
+
+    /// The interpolated tangent and the sign of the bitangent. A mirrored instance mirrors the bitangent, which a cross
+    /// product of mirrored vectors does not.
+    fn tangent(&self) -> Option<(DVec3, f64)> {
+        let tangents = self.draw.primitive.tangents.as_ref()?;
+        let tangent = self.interpolate(|vertex| {
+            (self.draw.world_from_object * tangents[vertex].truncate().as_dvec3()).normalize_or_zero()
+        });
+        // The sign is the same at all vertices of a triangle.
+        let sign = f64::from(tangents[self.triangle().vertices[0] as usize].w) * self.draw.handedness;
+        Some((tangent, sign))
+    }
+
+    /// KHR_materials_anisotropy: a direction in tangent space and a strength, the direction turned by the material's
+    /// rotation.
+    fn anisotropy(&self) -> Option<Anisotropy> {
+        let material = self.material();
+        if material.anisotropy_strength <= 0.0 {
+            return None;
+        }
+        let (tangent, sign) = self.tangent()?;
+        let normal = self.front_normal();
+        let along = (tangent - normal * normal.dot(tangent)).try_normalize()?;
+        let across = normal.cross(along) * sign;
+        let (direction, strength) = match material.texture(TextureSlot::Anisotropy) {
+            Some(_) => {
+                let texel = self.texture(TextureSlot::Anisotropy);
+                (texel.xy() * 2.0 - 1.0, texel.z)
+            }
+            None => (DVec2::X, 1.0),
+        };
+        let direction = DVec2::from_angle(f64::from(material.anisotropy_rotation_rad)).rotate(direction);
+        let tangent = (along * direction.x + across * direction.y).try_normalize().unwrap_or(along);
+        Some(Anisotropy {
+            tangent,
+            bitangent: normal.cross(tangent),
+            strength: f64::from(material.anisotropy_strength) * strength,
+        })
     }
 
     /// The normal map's normal in the frame of tangent, bitangent and `normal`, none of which is normalised
     /// (Mikkelsen 2008; glTF 2.0, 3.9.3). `None` without a normal map, or where the frame collapses.
     fn mapped_normal(&self, normal: DVec3) -> Option<DVec3> {
         self.material().texture(TextureSlot::Normal)?;
-        let tangents = self.draw.primitive.tangents.as_ref()?;
-        let tangent = self.interpolate(|vertex| {
-            (self.draw.world_from_object * tangents[vertex].truncate().as_dvec3()).normalize_or_zero()
-        });
-        // The sign is the same at all vertices of a triangle. A mirrored instance mirrors the bitangent, which a cross
-        // product of mirrored vectors does not.
-        let sign = f64::from(tangents[self.triangle().vertices[0] as usize].w) * self.draw.handedness;
+        let (tangent, sign) = self.tangent()?;
         let bitangent = normal.cross(tangent) * sign;
         let scale = f64::from(self.material().normal_scale);
         let local = (self.texture(TextureSlot::Normal).xyz() * 2.0 - 1.0) * DVec3::new(scale, scale, 1.0);

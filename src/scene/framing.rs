@@ -1,6 +1,6 @@
 //! Cameras that show a whole scene.
 
-use super::{Background, Camera, Projection, Scene, ToneMap, View};
+use super::{Background, Camera, Geometry, Projection, Scene, ToneMap, View};
 use glam::{DVec2, DVec3, UVec2, Vec3};
 use std::f64::consts::PI;
 
@@ -104,6 +104,7 @@ pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
         tone_map: ToneMap::default(),
         background: Background::Color(Vec3::splat(0.16)),
         energy_compensation: true,
+        geometry: Geometry::default(),
     }
 }
 

@@ -64,10 +64,12 @@ pub enum TextureSlot {
     Specular,
     /// RGB, sRGB.
     SpecularColor,
+    /// RG: direction in tangent space, 0.5 is zero; B: strength. Linear.
+    Anisotropy,
 }
 
 impl TextureSlot {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::BaseColor,
         Self::MetallicRoughness,
         Self::Normal,
@@ -75,6 +77,7 @@ impl TextureSlot {
         Self::Emissive,
         Self::Specular,
         Self::SpecularColor,
+        Self::Anisotropy,
     ];
 
     /// Whether the colour channels of this slot are stored in sRGB.
@@ -92,11 +95,36 @@ impl TextureSlot {
             Self::Emissive => "emissive",
             Self::Specular => "specular",
             Self::SpecularColor => "specular_color",
+            Self::Anisotropy => "anisotropy",
         }
     }
 }
 
-/// Parameters of a glTF 2.0 metallic-roughness material with KHR_materials_{emissive_strength, ior, specular, unlit}.
+/// The Fresnel curve of a material's metal part. F0 is the base colour in all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum MetalFresnel {
+    /// F0 + (1 - F0) (1 - cos)^5 (Schlick 1994).
+    #[default]
+    Schlick,
+    /// Schlick's curve less `a` cos (1 - cos)^6 a channel (Lazanyi and Szirmay-Kalos 2005).
+    Lazanyi { a: Vec3 },
+    /// Exact, from the complex index of refraction `n` + i `k` a channel. `a` is Lazanyi's parameter fitted to it, which
+    /// serves where the curve is integrated.
+    Conductor { n: Vec3, k: Vec3, a: Vec3 },
+}
+
+impl MetalFresnel {
+    /// The F82 tint (Kutz et al. 2021): Schlick's curve bent so that it passes through `f82` at 82 degrees, where the
+    /// cosine is 1/7. It is Lazanyi's curve with another parameter.
+    pub fn f82(f0: Vec3, f82: Vec3) -> Self {
+        let cos = 1.0_f32 / 7.0;
+        let schlick = f0 + (Vec3::ONE - f0) * (1.0 - cos).powi(5);
+        Self::Lazanyi { a: (schlick - f82) / (cos * (1.0 - cos).powi(6)) }
+    }
+}
+
+/// Parameters of a glTF 2.0 metallic-roughness material with
+/// KHR_materials_{anisotropy, emissive_strength, ior, specular, unlit}.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     pub name: Option<String>,
@@ -118,6 +146,11 @@ pub struct Material {
     pub specular: f32,
     /// Tint of the dielectric F0, 0 or above.
     pub specular_color: Vec3,
+    /// In [0, 1]; along the tangent, alpha of the NDF grows to 1 with its square. Needs tangents.
+    pub anisotropy_strength: f32,
+    /// Turns the direction of anisotropy from the tangent toward the bitangent.
+    pub anisotropy_rotation_rad: f32,
+    pub metal_fresnel: MetalFresnel,
     pub alpha_mode: AlphaMode,
     pub double_sided: bool,
     /// The base colour is the radiance; no light is evaluated.
@@ -160,6 +193,9 @@ impl Default for Material {
             ior: 1.5,
             specular: 1.0,
             specular_color: Vec3::ONE,
+            anisotropy_strength: 0.0,
+            anisotropy_rotation_rad: 0.0,
+            metal_fresnel: MetalFresnel::Schlick,
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,

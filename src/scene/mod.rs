@@ -17,9 +17,9 @@ pub use camera::{Camera, Projection};
 pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, SpecularTile};
 pub use image::{Image, Pixels, RadianceImage, Sampler, Texture, Wrap};
 pub use light::{Light, LightInWorld, LightKind};
-pub use material::{AlphaMode, Material, TextureRef, TextureSlot, UvTransform};
+pub use material::{AlphaMode, Material, MetalFresnel, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};
-pub use view::{Background, ToneMap, View};
+pub use view::{Background, Geometry, ToneMap, View};
 
 use glam::{DMat4, DVec3};
 

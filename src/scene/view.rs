@@ -33,6 +33,40 @@ pub enum Background {
     Color(Vec3),
 }
 
+/// The geometry factor of the specular lobe: how microfacets hide each other. The Schlick forms know no direction, and take the mean alpha of an anisotropic distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum Geometry {
+    /// Exact under Smith's assumptions: facets that are high are neither masked nor shadowed.
+    #[default]
+    SmithCorrelated,
+    /// Masking and shadowing as if independent: too dark where light and view are both grazing.
+    SmithSeparable,
+    /// Schlick's form with k = alpha / 2, which meets Smith's at alpha = 1.
+    SchlickHalfAlpha,
+    /// Schlick's form with k = (r + 1)^2 / 8 of the perceptual roughness r (Karis 2013, equation 4): made to look good
+    /// under punctual lights, and so dark on smooth surfaces.
+    SchlickKaris,
+    /// Schlick's form with k = ((r + 1) / 2)^2, as the lecture prints it. That is Karis' remapped alpha, which he halves
+    /// again to get k: the lecture's k is twice as large, and hides most of the light.
+    SchlickLecture,
+}
+
+impl Geometry {
+    pub const ALL: [Self; 5] =
+        [Self::SmithCorrelated, Self::SmithSeparable, Self::SchlickHalfAlpha, Self::SchlickKaris, Self::SchlickLecture];
+
+    /// The name in reports and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SmithCorrelated => "smith-correlated",
+            Self::SmithSeparable => "smith-separable",
+            Self::SchlickHalfAlpha => "schlick-half-alpha",
+            Self::SchlickKaris => "schlick-karis",
+            Self::SchlickLecture => "schlick-lecture",
+        }
+    }
+}
+
 /// A picture to be taken of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
@@ -44,4 +78,6 @@ pub struct View {
     pub background: Background,
     /// Give back the energy that single-scattering microfacet models lose (Kulla and Conty 2017).
     pub energy_compensation: bool,
+    /// For punctual lights; the tables that light from the environment is read through hold the default.
+    pub geometry: Geometry,
 }

@@ -1,6 +1,8 @@
 //! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
 
-use crate::scene::{AlphaMode, Material, Primitive, Sampler, Scene, TextureSlot, Topology, UvTransform};
+use crate::scene::{
+    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Sampler, Scene, TextureSlot, Topology, UvTransform,
+};
 use std::fmt;
 
 /// How one texture slot is sampled.
@@ -26,6 +28,8 @@ pub enum Alpha {
 pub struct SceneFeatures {
     pub punctual: bool,
     pub environment: bool,
+    /// Some metal's Fresnel curve is not Schlick's, so a table of the difference is bound.
+    pub fresnel_tail: bool,
 }
 
 impl SceneFeatures {
@@ -33,6 +37,10 @@ impl SceneFeatures {
         Self {
             punctual: scene.lights_in_world().iter().any(|light| light.intensity != glam::DVec3::ZERO),
             environment: scene.environment.as_ref().is_some_and(|environment| environment.intensity > 0.0),
+            fresnel_tail: scene
+                .materials
+                .iter()
+                .any(|material| FresnelFeature::of(material) != FresnelFeature::Schlick),
         }
     }
 
@@ -51,12 +59,34 @@ pub enum Shading {
     Unlit,
 }
 
+/// The Fresnel curve of the metal part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FresnelFeature {
+    Schlick,
+    Lazanyi,
+    Conductor,
+}
+
+impl FresnelFeature {
+    fn of(material: &Material) -> Self {
+        match material.metal_fresnel {
+            _ if material.metallic == 0.0 || material.unlit => Self::Schlick,
+            MetalFresnel::Schlick => Self::Schlick,
+            MetalFresnel::Lazanyi { .. } => Self::Lazanyi,
+            MetalFresnel::Conductor { .. } => Self::Conductor,
+        }
+    }
+}
+
 /// What the pixels of a draw read and do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct MaterialFeatures {
     pub shading: Shading,
     pub alpha: Alpha,
     pub double_sided: bool,
+    /// Microfacets are spread along the tangent.
+    pub anisotropic: bool,
+    pub fresnel: FresnelFeature,
     textures: [Option<TextureUse>; TextureSlot::ALL.len()],
 }
 
@@ -76,7 +106,15 @@ impl MaterialFeatures {
             AlphaMode::Blend => Alpha::Blend,
         };
         let mut samplers: Vec<Sampler> = Vec::new();
-        let mut features = Self { shading, alpha, double_sided: material.double_sided, textures: [None; _] };
+        let lit = shading == Shading::Lit;
+        let mut features = Self {
+            shading,
+            alpha,
+            double_sided: material.double_sided,
+            anisotropic: lit && material.anisotropy_strength > 0.0 && primitive.tangents.is_some(),
+            fresnel: if lit { FresnelFeature::of(material) } else { FresnelFeature::Schlick },
+            textures: [None; _],
+        };
         for (slot, texture) in material.textures() {
             if !features.reads(slot, material, primitive) {
                 continue;
@@ -101,6 +139,7 @@ impl MaterialFeatures {
             TextureSlot::BaseColor => self.shading != Shading::EmissiveOnly || self.alpha != Alpha::Opaque,
             TextureSlot::Emissive => self.shading != Shading::Unlit && material.emissive_nits != glam::Vec3::ZERO,
             TextureSlot::Normal => lit && primitive.tangents.is_some(),
+            TextureSlot::Anisotropy => self.anisotropic,
             TextureSlot::Occlusion => lit && material.occlusion_strength > 0.0,
             TextureSlot::MetallicRoughness => lit,
             TextureSlot::Specular => lit && material.specular > 0.0 && material.metallic < 1.0,
@@ -151,7 +190,7 @@ impl VertexFeatures {
         let reads_color = material.shading != Shading::EmissiveOnly || material.alpha != Alpha::Opaque;
         Self {
             normal: lit,
-            tangent: material.texture(TextureSlot::Normal).is_some(),
+            tangent: material.anisotropic || material.texture(TextureSlot::Normal).is_some(),
             color: reads_color && primitive.colors.is_some(),
             uv_sets: material.textures().fold(0, |sets, (_, texture)| sets | 1 << texture.uv_set),
         }
@@ -170,6 +209,7 @@ pub struct ForwardFeatures {
     pub material: MaterialFeatures,
     pub vertex: VertexFeatures,
     pub energy_compensation: bool,
+    pub geometry: Geometry,
     pub topology: Topology,
 }
 
@@ -194,6 +234,10 @@ impl fmt::Display for ForwardFeatures {
             (lit && self.scene.punctual, "punctual"),
             (lit && self.scene.environment, "environment"),
             (lit && !self.energy_compensation, "single_scatter"),
+            (self.material.anisotropic, "anisotropic"),
+            (self.material.fresnel == FresnelFeature::Lazanyi, "lazanyi"),
+            (self.material.fresnel == FresnelFeature::Conductor, "conductor"),
+            (lit && self.geometry != Geometry::SmithCorrelated, self.geometry.name()),
             (self.vertex.color, "vertex_color"),
             (self.material.alpha == Alpha::Mask, "mask"),
             (self.material.alpha == Alpha::Blend, "blend"),

@@ -14,7 +14,8 @@ pub mod types;
 
 pub use compose::{Composed, ShaderError, Slot, Slots, compose};
 pub use features::{
-    Alpha, ForwardFeatures, MaterialFeatures, SceneFeatures, Shading, TextureUse, VertexFeatures, material_samplers,
+    Alpha, ForwardFeatures, FresnelFeature, MaterialFeatures, SceneFeatures, Shading, TextureUse, VertexFeatures,
+    material_samplers,
 };
 pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, material_texture_binding,

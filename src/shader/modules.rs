@@ -1,15 +1,15 @@
 //! Which file fills which slot, for each pass.
 
 use super::compose::{Composed, ShaderError, Slot, Slots, compose};
-use super::features::{Alpha, ForwardFeatures, Shading};
+use super::features::{Alpha, ForwardFeatures, FresnelFeature, Shading};
 use super::sources::ShaderSources;
 use super::{interface, types};
-use crate::scene::{TextureSlot, ToneMap};
+use crate::scene::{Geometry, TextureSlot, ToneMap};
 
 /// The forward pass of one kind of draw.
 pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
     let choose = |on: bool, with: &'static str, without: &'static str| Slot::File(if on { with } else { without });
-    let ForwardFeatures { scene, material, vertex, energy_compensation, .. } = features;
+    let ForwardFeatures { scene, material, vertex, energy_compensation, geometry, .. } = features;
     let normal_mapped = material.texture(TextureSlot::Normal).is_some();
     let slots = Slots::from([
         ("types", Slot::Text(types::wgsl())),
@@ -39,6 +39,18 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
                 Shading::Unlit => "lighting/unlit.wgsl",
             }),
         ),
+        ("tangents", choose(material.anisotropic, "surface/tangents_anisotropic.wgsl", "surface/tangents_none.wgsl")),
+        ("shape", choose(material.anisotropic, "lighting/shape_anisotropic.wgsl", "lighting/shape_isotropic.wgsl")),
+        ("visibility", Slot::File(visibility(*geometry))),
+        ("visibility_anisotropic", Slot::File(visibility_anisotropic(*geometry))),
+        (
+            "fresnel",
+            Slot::File(match material.fresnel {
+                FresnelFeature::Schlick => "lighting/fresnel_schlick.wgsl",
+                FresnelFeature::Lazanyi => "lighting/fresnel_lazanyi.wgsl",
+                FresnelFeature::Conductor => "lighting/fresnel_conductor.wgsl",
+            }),
+        ),
         ("punctual", choose(scene.punctual, "lighting/punctual.wgsl", "lighting/punctual_none.wgsl")),
         ("environment", choose(scene.environment, "lighting/environment.wgsl", "lighting/environment_none.wgsl")),
         (
@@ -55,6 +67,24 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
         ),
     ]);
     compose(sources, "pass/forward.wgsl", &slots)
+}
+
+fn visibility(geometry: Geometry) -> &'static str {
+    match geometry {
+        Geometry::SmithCorrelated => "lobe/visibility_smith_correlated.wgsl",
+        Geometry::SmithSeparable => "lobe/visibility_smith_separable.wgsl",
+        Geometry::SchlickHalfAlpha => "lobe/visibility_schlick_half_alpha.wgsl",
+        Geometry::SchlickKaris => "lobe/visibility_schlick_karis.wgsl",
+        Geometry::SchlickLecture => "lobe/visibility_schlick_lecture.wgsl",
+    }
+}
+
+fn visibility_anisotropic(geometry: Geometry) -> &'static str {
+    match geometry {
+        Geometry::SmithCorrelated => "lobe/visibility_anisotropic_smith_correlated.wgsl",
+        Geometry::SmithSeparable => "lobe/visibility_anisotropic_smith_separable.wgsl",
+        _ => "lighting/visibility_anisotropic_mean.wgsl",
+    }
 }
 
 /// The panorama behind the scene.

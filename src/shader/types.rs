@@ -87,8 +87,18 @@ gpu_struct! {
         pad_0: f32,
         pad_1: f32,
         pad_2: f32,
+        /// Strength, and the cosine and sine of the rotation.
+        anisotropy: vec4f,
+        /// Lazanyi's a of the metal.
+        lazanyi_a: vec3f,
+        pad_3: f32,
+        /// Complex index of refraction of the metal.
+        conductor_n: vec3f,
+        pad_4: f32,
+        conductor_k: vec3f,
+        pad_5: f32,
         /// Two rows a texture slot: uv' = (dot(row_0.xyz, (u, v, 1)), dot(row_1.xyz, (u, v, 1))).
-        uv_transforms: [vec4f; 14],
+        uv_transforms: [vec4f; 16],
     }
 }
 

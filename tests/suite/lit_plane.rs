@@ -10,13 +10,16 @@ use specula::capture::CaptureOptions;
 use specula::gpu::Gpu;
 use specula::gpu::formats::Precision;
 use specula::progress::Silent;
-use specula::reference::albedo::DirectionalAlbedo;
+use specula::reference::albedo::{DfgIntegrator, DirectionalAlbedo};
 use specula::reference::brdf::{F_KullaConty, F_Schlick_average};
+use specula::reference::bsdf::ModelChoices;
 use specula::reference::integrator::Lighting;
+use specula::reference::microfacet::Metal;
 use specula::reference::surface::{Surface, World};
 use specula::scene::{
-    Background, Camera, Environment, EnvironmentImage, EnvironmentMaps, Image, LightKind, Material, Mesh, Node, Pixels,
-    Primitive, Projection, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap, Topology, UvTransform, View,
+    Background, Camera, Environment, EnvironmentImage, EnvironmentMaps, Geometry, Image, LightKind, Material, Mesh,
+    MetalFresnel, Node, Pixels, Primitive, Projection, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap,
+    Topology, UvTransform, View,
 };
 use specula::shader::ShaderSources;
 
@@ -24,6 +27,7 @@ use specula::shader::ShaderSources;
 pub(crate) struct Plane {
     pub(crate) name: &'static str,
     scene: Scene,
+    geometry: Geometry,
     maps: Option<EnvironmentMaps>,
     truth: Vec<DVec3>,
     /// Largest error of a channel relative to the pixel's brightest one.
@@ -36,7 +40,7 @@ impl Plane {
     /// Draws with the given shaders; the largest error of any pixel, infinite where a pixel is no number.
     pub(crate) fn error(&self, gpu: &Gpu, shaders: ShaderSources) -> f64 {
         let options = CaptureOptions { samples: 1, precision: Precision::Float };
-        let frame = draw_with(gpu, shaders, &self.scene, self.maps.as_ref(), &view(), options);
+        let frame = draw_with(gpu, shaders, &self.scene, self.maps.as_ref(), &view(self.geometry), options);
         let error = |(got, truth): (Vec4, &DVec3)| {
             let got = got.truncate().as_dvec3();
             let error = (got - truth).abs().max_element() / truth.max_element();
@@ -73,19 +77,54 @@ pub(crate) fn planes() -> Vec<Plane> {
         under_panorama("dielectric under a panorama", plane(&dielectric), 8e-4),
         under_panorama("half metal under a panorama", plane(&half_metal), 8e-4),
         under_panorama("rough metal under a panorama", plane(&rough), 8e-4),
-        under_panorama("textures under a panorama", textured_back(half_metal), 3.6e-3),
+        under_panorama("textures under a panorama", textured_back(half_metal.clone()), 3.6e-3),
     ]
+    .into_iter()
+    .chain(other_microfacets(&half_metal))
+    .collect()
 }
 
-fn under_lamps(name: &'static str, mut scene: Scene, limit: f64) -> Plane {
+/// Every geometry, Fresnel curve and spread that is not the default.
+fn other_microfacets(half_metal: &Material) -> Vec<Plane> {
+    let gold = Metal::by_symbol("Au").expect("gold is in the table").conductor();
+    let a = vec3(3.0, 0.5, -0.4);
+    let with = |metal_fresnel| Material { metal_fresnel, ..half_metal.clone() };
+    let anisotropic = Material { anisotropy_strength: 0.8, anisotropy_rotation_rad: 0.6, ..half_metal.clone() };
+    let stretched = || {
+        let mut scene = plane_scene(anisotropic.clone(), Vec3::Z);
+        scene.meshes[0].primitives[0].tangents = Some(vec![Vec4::new(0.8, 0.6, 0.0, -1.0); 4]);
+        scene
+    };
+    let mut planes = vec![
+        // Measured 4.5e-5 or less, margin 2.
+        under_lamps("Lazanyi under lamps", plane_scene(with(MetalFresnel::Lazanyi { a }), Vec3::Z), 9e-5),
+        under_lamps("conductor under lamps", plane_scene(with(gold), Vec3::Z), 9e-5),
+        under_lamps("anisotropic under lamps", stretched(), 9e-5),
+        under_panorama("Lazanyi under a panorama", plane_scene(with(MetalFresnel::Lazanyi { a }), Vec3::Z), 8e-4),
+        under_panorama("conductor under a panorama", plane_scene(with(gold), Vec3::Z), 8e-4),
+        // Measured 2e-3, margin 2: directions in texels of 8 bits.
+        under_lamps("anisotropic textures under lamps", textured_back(anisotropic.clone()), 4e-3),
+    ];
+    for geometry in Geometry::ALL {
+        planes.push(with_geometry(geometry.name(), plane_scene(half_metal.clone(), Vec3::Z), geometry, 9e-5));
+        planes.push(with_geometry("anisotropic with another geometry", stretched(), geometry, 9e-5));
+    }
+    planes
+}
+
+fn under_lamps(name: &'static str, scene: Scene, limit: f64) -> Plane {
+    with_geometry(name, scene, Geometry::default(), limit)
+}
+
+fn with_geometry(name: &'static str, mut scene: Scene, geometry: Geometry, limit: f64) -> Plane {
     add_light(&mut scene, LightKind::Point { range_m: Some(3.0) }, 6.0, DVec3::new(-0.8, 0.3, 0.9));
     let spot = LightKind::Spot { range_m: None, inner_cone_rad: 0.2, outer_cone_rad: 0.7 };
     // A lamp shines along -Z, at the plane.
     add_light(&mut scene, spot, 9.0, DVec3::new(0.5, -0.2, 1.5));
     add_light(&mut scene, LightKind::Directional, 2.0, DVec3::new(5.0, 5.0, 5.0));
-    let lighting = Lighting::new(&scene, true);
+    let lighting = Lighting::new(&scene, ModelChoices { geometry, ..Default::default() });
     let truth = pixels(&scene, |surface, v| lighting.radiance(surface, v, &[DVec2::ZERO; 3]));
-    Plane { name, truth, maps: None, limit, scene }
+    Plane { name, truth, geometry, maps: None, limit, scene }
 }
 
 fn under_panorama(name: &'static str, mut scene: Scene, limit: f64) -> Plane {
@@ -100,7 +139,7 @@ fn under_panorama(name: &'static str, mut scene: Scene, limit: f64) -> Plane {
     let albedo = DirectionalAlbedo::default();
     let truth = pixels(&scene, |surface, v| split_sum(surface, v, &panorama, &maps, &albedo));
     scene.environment = Some(panorama);
-    Plane { name, truth, maps: Some(maps), limit, scene }
+    Plane { name, truth, geometry: Geometry::default(), maps: Some(maps), limit, scene }
 }
 
 /// The real-time path of docs/model.md, "Environment".
@@ -117,22 +156,29 @@ fn split_sum(
     let mirror = panorama.environment_from_world(2.0 * n.dot(v) * n - v);
     let specular_radiance = maps.specular(mirror, r);
     let E_over_pi = maps.irradiance_over_pi(panorama.environment_from_world(n));
-    let lobe = |F0: DVec3, F90: f64| {
-        let F_ms = F_KullaConty(F_Schlick_average(F0, F90), average.albedo());
-        (dfg.with_fresnel(F0, F90), F_ms * (1.0 - dfg.albedo()))
+    let tail = DfgIntegrator::default().fresnel_tail(r, n.dot(v));
+    // `a` of Lazanyi's term, whose cosine average is 1/126.
+    let dipped = |F0: DVec3, F90: f64, a: DVec3| {
+        let F_ms = F_KullaConty(F_Schlick_average(F0, F90) - a / 126.0, average.albedo());
+        (dfg.with_fresnel(F0, F90) - a * tail, F_ms * (1.0 - dfg.albedo()))
+    };
+    let lobe = |F0, F90| dipped(F0, F90, DVec3::ZERO);
+    let a = match material.metal_fresnel {
+        MetalFresnel::Schlick => DVec3::ZERO,
+        MetalFresnel::Lazanyi { a } | MetalFresnel::Conductor { a, .. } => a.as_dvec3(),
     };
     let radiance = |(single, multiple): (DVec3, DVec3)| specular_radiance * single + E_over_pi * multiple;
 
     let coat = lobe(DVec3::splat(material.dielectric_f0.max_element()), material.dielectric_f90);
     let diffuse = material.base_color * (1.0 - coat.0.x - coat.1.x) * E_over_pi;
     let dielectric = radiance(lobe(material.dielectric_f0, material.dielectric_f90)) + diffuse;
-    let metal = radiance(lobe(material.base_color, 1.0));
+    let metal = radiance(dipped(material.base_color, 1.0, a));
     dielectric.lerp(metal, material.metallic) * panorama.intensity * surface.occlusion + surface.emissive_nits
 }
 
 /// The truth for every pixel's centre, from the surface there and the direction toward the viewer.
 fn pixels(scene: &Scene, radiance: impl Fn(&Surface, DVec3) -> DVec3) -> Vec<DVec3> {
-    let view = view();
+    let view = view(Geometry::default());
     let world = World::new(scene, &view);
     let pixel = |i: u32| {
         let center = DVec2::new(f64::from(i % SIDE_PX), f64::from(i / SIDE_PX)) + 0.5;
@@ -145,7 +191,7 @@ fn pixels(scene: &Scene, radiance: impl Fn(&Surface, DVec3) -> DVec3) -> Vec<DVe
 }
 
 /// Seen at angles from 20 to 65 degrees.
-fn view() -> View {
+fn view(geometry: Geometry) -> View {
     let projection = Projection::Perspective { fov_y_rad: 0.8 };
     View {
         camera: Camera::look_at(DVec3::new(0.3, -1.5, 1.6), DVec3::ZERO, DVec3::Z, projection, 0.1, 100.0),
@@ -154,6 +200,7 @@ fn view() -> View {
         tone_map: ToneMap::None,
         background: Background::Transparent,
         energy_compensation: true,
+        geometry,
     }
 }
 

@@ -4,7 +4,8 @@ use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use specula::gpu::bindings::{background_entries, display_entries, frame_entries, material_entries};
 use specula::scene::{
-    AlphaMode, Material, Primitive, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap, Topology, UvTransform,
+    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap,
+    Topology, UvTransform,
 };
 use specula::shader::{
     Composed, DisplayFeatures, ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
@@ -25,13 +26,14 @@ pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
     let of_slots = |slots: u32| {
         let (material, primitive) = (material(slots), primitive(slots));
         [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
-            let scene_features = SceneFeatures { punctual, environment };
+            let scene_features = SceneFeatures { punctual, environment, fresnel_tail: slots % 3 > 0 };
             let features = MaterialFeatures::of(&material, &primitive, &scene, scene_features.is_lit());
             ForwardFeatures {
                 scene: scene_features,
                 material: features,
                 vertex: VertexFeatures::of(&features, &primitive),
                 energy_compensation: !slots.is_multiple_of(5),
+                geometry: Geometry::ALL[slots as usize % 5],
                 topology: Topology::Triangles,
             }
         })
@@ -46,6 +48,10 @@ fn material(slots: u32) -> Material {
         material.set_texture(slot, Some(TextureRef { texture: index % 2, uv_set: index as u32 % 2, transform }));
     }
     material.double_sided = slots.is_multiple_of(2);
+    material.anisotropy_strength = if slots.is_multiple_of(4) { 0.5 } else { 0.0 };
+    let (n, k, a) = (Vec3::ONE, Vec3::ONE, Vec3::ONE);
+    let curves = [MetalFresnel::Schlick, MetalFresnel::Lazanyi { a }, MetalFresnel::Conductor { n, k, a }];
+    material.metal_fresnel = curves[slots as usize % 3];
     material.unlit = slots.is_multiple_of(11);
     material.alpha_mode = [AlphaMode::Opaque, AlphaMode::Mask { cutoff: 0.5 }, AlphaMode::Blend][slots as usize % 3];
     material

@@ -54,6 +54,7 @@ pub(crate) fn front_view(side_px: u32) -> View {
         tone_map: ToneMap::Neutral,
         background: Background::Transparent,
         energy_compensation: true,
+        geometry: Default::default(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::reference::albedo::DirectionalAlbedo;
 use crate::reference::brdf::alpha_from_perceptual_roughness;
-use crate::reference::bsdf::{Bsdf, SurfaceMaterial};
+use crate::reference::bsdf::{Bsdf, ModelChoices, SurfaceMaterial};
 use crate::reference::microfacet::{Distribution, Microfacet};
 use glam::DVec3;
 
@@ -58,19 +58,25 @@ pub struct StandardBrdf<'a> {
     pub energy_compensation: bool,
 }
 
+impl StandardBrdf<'_> {
+    fn choices(&self) -> ModelChoices {
+        ModelChoices { energy_compensation: self.energy_compensation, ..Default::default() }
+    }
+}
+
 impl Brdf for StandardBrdf<'_> {
     fn evaluate(&self, v: DVec3, l: DVec3) -> DVec3 {
         if v.z <= 0.0 {
             return DVec3::ZERO;
         }
-        Bsdf::new(self.table, self.material, DVec3::Z, v, self.energy_compensation).evaluate(l)
+        Bsdf::new(self.table, self.material, DVec3::Z, v, self.choices()).evaluate(l)
     }
 
     fn seen_from(&self, v: DVec3) -> Box<dyn Fn(DVec3) -> DVec3 + '_> {
         if v.z <= 0.0 {
             return Box::new(|_| DVec3::ZERO);
         }
-        let bsdf = Bsdf::new(self.table, self.material, DVec3::Z, v, self.energy_compensation);
+        let bsdf = Bsdf::new(self.table, self.material, DVec3::Z, v, self.choices());
         Box::new(move |l| bsdf.evaluate(l))
     }
 

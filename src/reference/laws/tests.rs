@@ -182,6 +182,8 @@ fn combinations_obey_the_laws() {
         perceptual_roughness: 0.3,
         dielectric_f0: DVec3::splat(0.04),
         dielectric_f90: 1.0,
+        metal_fresnel: Default::default(),
+        anisotropy: None,
     };
     for energy_compensation in [true, false] {
         let report = LawReport::new(&StandardBrdf { table: &table, material, energy_compensation }, None, accuracy);

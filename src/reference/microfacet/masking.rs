@@ -5,6 +5,7 @@
 use super::Distribution;
 use super::distribution::Lambda_GGX_anisotropic;
 use crate::reference::brdf::G1_GGX;
+pub use crate::scene::Geometry;
 use glam::DVec3;
 
 /// Smith's masking and shadowing, taken as independent (Walter et al. 2007, equation 23; Heitz 2014, equation 98),
@@ -37,38 +38,7 @@ pub fn V_Schlick(k: f64, NoV: f64, NoL: f64) -> f64 {
     G1(NoV) * G1(NoL) / (4.0 * NoV * NoL)
 }
 
-/// A geometry factor. The Schlick forms know no direction, and take the mean alpha of an anisotropic distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Geometry {
-    /// Exact under Smith's assumptions: facets that are high are neither masked nor shadowed.
-    SmithCorrelated,
-    /// Masking and shadowing as if independent: too dark where light and view are both grazing.
-    SmithSeparable,
-    /// Schlick's form with k = alpha / 2, which meets Smith's at alpha = 1.
-    SchlickHalfAlpha,
-    /// Schlick's form with k = (r + 1)^2 / 8 of the perceptual roughness r (Karis 2013, equation 4): made to look good
-    /// under punctual lights, and so dark at low roughness.
-    SchlickKaris,
-    /// Schlick's form with k = ((r + 1) / 2)^2, as the lecture prints it. That is Karis' remapped alpha, which he halves
-    /// again to get k: the lecture's k is twice as large, and hides most of the light.
-    SchlickLecture,
-}
-
 impl Geometry {
-    pub const ALL: [Self; 5] =
-        [Self::SmithCorrelated, Self::SmithSeparable, Self::SchlickHalfAlpha, Self::SchlickKaris, Self::SchlickLecture];
-
-    /// The name in reports and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::SmithCorrelated => "smith-correlated",
-            Self::SmithSeparable => "smith-separable",
-            Self::SchlickHalfAlpha => "schlick-half-alpha",
-            Self::SchlickKaris => "schlick-karis",
-            Self::SchlickLecture => "schlick-lecture",
-        }
-    }
-
     /// V, all of the lobe that is neither D nor F; `v.z` and `l.z` in (0, 1].
     pub fn visibility(self, distribution: &Distribution, v: DVec3, l: DVec3) -> f64 {
         if let Some(k) = self.k(distribution.mean_alpha()) {

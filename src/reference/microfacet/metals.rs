@@ -5,6 +5,7 @@
 use super::fresnel::{F_conductor, conductor, lazanyi_shape};
 use crate::reference::brdf::F_Schlick;
 use crate::reference::quadrature::GaussLegendre;
+use crate::scene::{Material, MetalFresnel};
 use glam::DVec3;
 
 /// A metal at 650, 550 and 450 nm, which stand for red, green and blue.
@@ -100,6 +101,17 @@ impl Metal {
     /// Reflectance at cos = 1/7, 82 degrees.
     pub fn f82(&self) -> DVec3 {
         F_conductor(self.n, self.k, 1.0 / 7.0)
+    }
+
+    /// The exact curve, as a material holds it.
+    pub fn conductor(&self) -> MetalFresnel {
+        MetalFresnel::Conductor { n: self.n.as_vec3(), k: self.k.as_vec3(), a: self.a.as_vec3() }
+    }
+
+    /// A material of this metal; `fresnel` is [`Self::conductor`] or an approximation of it.
+    pub fn material(&self, perceptual_roughness: f32, metal_fresnel: MetalFresnel) -> Material {
+        let base_color = self.f0().as_vec3().extend(1.0);
+        Material { base_color, metallic: 1.0, perceptual_roughness, metal_fresnel, ..Default::default() }
     }
 
     /// [`fit_a`] of each channel.

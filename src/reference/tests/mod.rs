@@ -20,6 +20,7 @@ pub(in crate::reference) fn view() -> View {
         tone_map: ToneMap::Neutral,
         background: Background::Transparent,
         energy_compensation: true,
+        geometry: Geometry::default(),
     }
 }
 

@@ -1,0 +1,21 @@
+#import "brdf/d_ggx.wgsl"
+#import <visibility>
+
+// How the microfacets are spread: the same in all directions.
+struct Shape {
+    alpha: f32,
+}
+
+fn make_shape(surface: Surface, alpha: f32) -> Shape {
+    return Shape(alpha);
+}
+
+// D V of the specular lobe.
+fn D_V(shape: Shape, n: vec3f, v: vec3f, l: vec3f, h: vec3f, NoV: f32, NoL: f32) -> f32 {
+    return D_GGX(shape.alpha, n, h) * visibility(shape.alpha, NoV, NoL);
+}
+
+// Where the specular lobe looks for the environment.
+fn mirror_direction(shape: Shape, n: vec3f, v: vec3f) -> vec3f {
+    return reflect(-v, n);
+}

@@ -1,0 +1,44 @@
+//! Tables as files: little-endian unorm16, nothing else.
+
+use std::path::Path;
+
+/// The nearest unorm16.
+pub(super) fn unorm16(value: f64) -> u16 {
+    (value.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16
+}
+
+pub(super) fn decode(bytes: &[u8]) -> Vec<u16> {
+    bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect()
+}
+
+/// A table that is part of the library.
+#[derive(Debug, Clone, Copy)]
+pub struct EmbeddedTable {
+    /// File name under `assets/`.
+    pub file: &'static str,
+    /// Integrates it anew.
+    pub bake: fn() -> Vec<u16>,
+    /// The values that the library has.
+    pub embedded: fn() -> Vec<u16>,
+}
+
+impl EmbeddedTable {
+    /// Bakes the table into `folder`.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write(&self, folder: &Path) -> std::io::Result<()> {
+        let bytes: Vec<u8> = (self.bake)().into_iter().flat_map(u16::to_le_bytes).collect();
+        std::fs::write(folder.join(self.file), bytes)
+    }
+
+    /// Steps of 65535 by which a new bake differs at most from the embedded values. One is fine: the trigonometric
+    /// functions of another platform may round the other way.
+    pub fn worst_difference(&self) -> u16 {
+        let (baked, embedded) = ((self.bake)(), (self.embedded)());
+        if baked.len() != embedded.len() {
+            return u16::MAX;
+        }
+        baked.iter().zip(embedded).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(u16::MAX)
+    }
+}
