@@ -11,7 +11,6 @@ pub mod environment;
 pub mod geometry;
 pub mod integrator;
 pub mod lights;
-pub mod quadrature;
 mod render;
 pub mod sampling;
 mod strokes;
@@ -20,4 +19,5 @@ pub mod surface;
 mod tests;
 pub mod texture;
 
+pub use crate::math::quadrature;
 pub use render::{ReferenceOptions, render};
