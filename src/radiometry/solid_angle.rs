@@ -45,7 +45,7 @@ fn sphere_sine(radius: Distance, distance: Distance) -> Result<f64, RadiometryEr
 /// Of a rectangle, seen from any point, from its front or its back. 0 from points in its plane.
 ///
 /// As two triangles: the usual sum of four arctangents, one a corner (Khadjavi 1968), cancels where the rectangle is far
-/// from the axis through the point. Good to 1e-15 sr at its own size, 1e-11 sr at a ten-thousandth of it.
+/// from the axis through the point. Good to 1e-15 sr at its own size, 1e-11 sr at a twenty-thousandth of it.
 pub fn rectangle(rectangle: &Rectangle, point: DVec3) -> SolidAngle {
     let [a, b, c, d] = rectangle.corners();
     SolidAngle::raw(triangle([a, b, c], point).as_steradians() + triangle([a, c, d], point).as_steradians())

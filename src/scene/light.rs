@@ -96,14 +96,17 @@ impl Light {
         Ok(tinted)
     }
 
-    /// The same light, ending at `range_m` metres by the window of KHR_lights_punctual, which costs flux further out. A
-    /// directional light has no range.
+    /// The same light, ending at `range_m` metres by the window of KHR_lights_punctual, which costs flux further out.
+    /// A directional light takes none.
     pub fn with_range(mut self, range_m: f64) -> Result<Self, RadiometryError> {
         let in_domain = range_m > 0.0 && range_m.is_finite();
         RadiometryError::check(in_domain, "range", range_m, "a finite number above 0, in m")?;
         match &mut self.kind {
             LightKind::Point { range_m: range } | LightKind::Spot { range_m: range, .. } => *range = Some(range_m),
-            LightKind::Directional => {}
+            LightKind::Directional => {
+                let expected = "no range for a directional light";
+                return Err(RadiometryError { parameter: "range", value: range_m, expected });
+            }
         }
         Ok(self)
     }

@@ -72,6 +72,8 @@ fn lights_that_cannot_be_are_refused_by_name() {
     assert_eq!(name(lamp.clone().with_color(DVec3::ZERO)), "color");
     assert_eq!(name(lamp.with_range(f64::NAN)), "range");
     let luminance = Luminance::from_nits(1.0).unwrap();
+    let lamp = Light::directional_from_luminance(luminance, 1.0).unwrap();
+    assert_eq!(name(lamp.with_range(2.0)), "range");
     assert_eq!(name(Light::directional_from_luminance(luminance, 0.0)), "angular diameter");
     assert_eq!(SpotCone::new(0.0, 2.0).unwrap_err().parameter, "outer cone angle");
     assert_eq!(SpotCone::new(0.5, 0.4).unwrap_err().parameter, "inner cone angle");
