@@ -70,7 +70,7 @@ pub fn triangle(corners: [DVec3; 3], point: DVec3) -> SolidAngle {
 ///
 /// `corners` counter-clockwise as seen from the front, in metres; 0 for a receiver behind. Half the sum over the edges of
 /// their angle as seen from the receiver, times the cosine between the normal of the edge's plane through the receiver
-/// and its own normal (Lambert 1760; Baum, Rushmeier and Winget 1989, equation 8).
+/// and its own normal (Lambert 1760; Baum, Rushmeier and Winget 1989).
 pub fn polygon_projected(corners: &[DVec3], receiver: &Receiver) -> ProjectedSolidAngle {
     let relative: Vec<DVec3> = corners.iter().map(|&corner| corner - receiver.position()).collect();
     let visible = clip_to_horizon(&relative, receiver.normal());

@@ -44,7 +44,7 @@ fn lamberts_polygon_formula_agrees_with_quadrature() {
 #[test]
 fn closed_forms_of_view_factors() {
     // A square of side 2 a, seen from h below its centre: E / L = 4 A/sqrt(1 + A^2) atan(A / sqrt(1 + A^2)), A = a/h: four
-    // quarters of the textbook's plane element below a corner (Siegel and Howell, configuration factor B-4).
+    // quarters of the textbook's plane element below a corner (Siegel and Howell 1972).
     let (half, height) = (0.7, 1.3);
     let (x, root) = (half / height, f64::hypot(1.0, half / height));
     let expected = 4.0 * (x / root) * (x / root).atan();
@@ -107,8 +107,8 @@ fn radiance_is_constant_along_a_ray() {
 
 #[test]
 fn etendue_of_opposite_squares() {
-    // Identical, parallel, directly opposed squares at X = side / distance: the textbook's view factor (Siegel and
-    // Howell, configuration factor C-11), times pi times the area.
+    // Identical, parallel, directly opposed squares at X = side / distance: the textbook's view factor (Howell's
+    // catalogue of configuration factors, C-11), times pi times the area.
     for x in [0.1_f64, 1.0, 5.0] {
         let q = 1.0 + x * x;
         let f = (2.0 / (PI * x * x))
