@@ -11,6 +11,7 @@ pub mod import;
 pub mod math;
 pub mod passes;
 pub mod progress;
+pub mod radiometry;
 pub mod reference;
 pub mod renderer;
 pub mod scene;

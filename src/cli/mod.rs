@@ -2,8 +2,10 @@
 
 mod bake;
 mod camera;
+mod color;
 mod environment;
 mod error;
+mod light;
 mod output;
 mod progress;
 mod render;
