@@ -1,6 +1,7 @@
 //! Energy: the directional albedo of a BRDF, for light from everywhere.
 
 use super::brdf::Brdf;
+use super::exceeds;
 use super::hemisphere::Polar;
 use crate::reference::quadrature::adaptive::{Accuracy, Estimate, kronrod_nodes};
 use glam::DVec3;
@@ -86,8 +87,7 @@ struct Largest {
 
 impl Largest {
     fn take_larger(&mut self, root: f64, turn: f64, sample: AlbedoSample) {
-        // NaN is larger than anything.
-        if !(sample.albedo.value.max_element() <= self.sample.albedo.value.max_element()) {
+        if exceeds(sample.albedo.value.max_element(), self.sample.albedo.value.max_element()) {
             *self = Self { root, turn, sample };
         }
     }

@@ -69,6 +69,11 @@ impl Geometry {
         }
     }
 
+    /// The model of a name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|geometry| geometry.name() == name)
+    }
+
     /// V, all of the lobe that is neither D nor F; `v.z` and `l.z` in (0, 1].
     pub fn visibility(self, distribution: &Distribution, v: DVec3, l: DVec3) -> f64 {
         if let Some(k) = self.k(distribution.mean_alpha()) {
