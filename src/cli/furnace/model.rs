@@ -10,7 +10,8 @@ use crate::scene::{Material, Pixels, Scene, TextureSlot};
 use glam::{DVec3, DVec4, Vec4Swizzles};
 use std::path::Path;
 
-/// Every material of the model: its factors alone and, if it is textured, the corners of what the textures hold.
+/// Every material of the model: its factors alone and, if it is textured, the corners of what the textures hold, in the
+/// parts that no triangle shows too. Vertex colours are left out: they only darken.
 pub(super) fn subjects(path: &Path) -> Result<Vec<Subject>, CliError> {
     let imported = load_model(path, &ImportOptions::default())?;
     for warning in &imported.warnings {
@@ -62,7 +63,7 @@ fn channels_extent<T: Copy + Ord + Default + Into<f64>>(data: &[T]) -> [DVec4; 2
 
 fn of_material(scene: &Scene, material: &Material, name: &str) -> Vec<Subject> {
     let extent = |slot| extent(scene, material, slot);
-    let [roughest_last, metallic_roughness] = [0, 1].map(|i| extent(TextureSlot::MetallicRoughness)[i]);
+    let [least, greatest] = extent(TextureSlot::MetallicRoughness);
     let corner = |what: &str, texture: [DVec4; 4]| {
         let [metallic_roughness, base_color, specular, specular_color] = texture;
         let unit = |value: DVec3| value.clamp(DVec3::ZERO, DVec3::ONE);
@@ -82,8 +83,8 @@ fn of_material(scene: &Scene, material: &Material, name: &str) -> Vec<Subject> {
     let mut subjects = vec![corner("factors", [DVec4::ONE; 4])];
     let brightest =
         [TextureSlot::BaseColor, TextureSlot::Specular, TextureSlot::SpecularColor].map(|slot| extent(slot)[1]);
-    for y in [roughest_last.y, metallic_roughness.y] {
-        for z in [roughest_last.z, metallic_roughness.z] {
+    for y in [least.y, greatest.y] {
+        for z in [least.z, greatest.z] {
             let texel = DVec4::new(1.0, y, z, 1.0);
             let textured = corner("textured", [texel, brightest[0], brightest[1], brightest[2]]);
             if !subjects.iter().any(|other| same_surface(other, &textured)) {
@@ -96,4 +97,65 @@ fn of_material(scene: &Scene, material: &Material, name: &str) -> Vec<Subject> {
 
 fn same_surface(a: &Subject, b: &Subject) -> bool {
     matches!((&a.surface, &b.surface), (SurfaceKind::Standard(a), SurfaceKind::Standard(b)) if a == b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::check;
+    use super::*;
+    use crate::import::tests::samples::model as model_file;
+    use crate::scene::{Image, Sampler, Texture, TextureRef, UvTransform};
+
+    fn textured() -> (Scene, Material) {
+        let image = |texels: [[u8; 4]; 2]| Image {
+            name: None,
+            width: 2,
+            height: 1,
+            pixels: Pixels::Rgba8(texels.concat().into()),
+        };
+        let scene = Scene {
+            images: vec![image([[0, 51, 0, 255], [9, 255, 102, 255]]), image([[255, 0, 55, 255], [0, 55, 0, 0]])],
+            textures: (0..2).map(|image| Texture { image, sampler: Sampler::default() }).collect(),
+            ..Scene::default()
+        };
+        let mut material = Material { perceptual_roughness: 0.5, ..Material::default() };
+        let texture = |texture| Some(TextureRef { texture, uv_set: 0, transform: UvTransform::IDENTITY });
+        material.set_texture(TextureSlot::MetallicRoughness, texture(0));
+        material.set_texture(TextureSlot::BaseColor, texture(1));
+        (scene, material)
+    }
+
+    #[test]
+    fn textures_are_checked_at_their_corners() {
+        let (scene, material) = textured();
+        let found: Vec<SurfaceMaterial> = of_material(&scene, &material, "m")
+            .into_iter()
+            .filter_map(|subject| match subject.surface {
+                SurfaceKind::Standard(surface) => Some(surface),
+                SurfaceKind::Lobe(_) => None,
+            })
+            .collect();
+        let parameters = |surface: &SurfaceMaterial| (surface.perceptual_roughness, surface.metallic);
+        let corners: Vec<_> = found.iter().map(parameters).collect();
+        assert_eq!(corners, [(0.5, 1.0), (0.1, 0.0), (0.1, 0.4), (0.5, 0.0), (0.5, 0.4)]);
+        assert_eq!(found[0].base_color, DVec3::ONE);
+        let decoded = linear_from_srgb(55.0 / 255.0);
+        assert!((found[1].base_color - DVec3::new(1.0, decoded, decoded)).length() < 1e-12);
+        assert!((found[1].dielectric_f0 - 0.04).abs().max_element() < 1e-7);
+    }
+
+    #[test]
+    fn corners_that_are_the_same_are_checked_once() {
+        assert_eq!(of_material(&Scene::default(), &Material::default(), "m").len(), 1);
+    }
+
+    #[test]
+    fn the_helmet_obeys_the_laws() {
+        let Some(path) = model_file("DamagedHelmet.glb") else { return };
+        let checked = check(subjects(&path).unwrap(), true, 2e-3).unwrap();
+        assert!(checked.len() > 1);
+        for one in checked {
+            assert_eq!(one.violations, [], "{:?}", one.subject);
+        }
+    }
 }

@@ -49,6 +49,9 @@ fn draw_panel(panel: &[Checked], panel_y: f64, top: f64) -> String {
     axes(&mut svg, &x, &y, top);
     for (i, one) in panel.iter().enumerate() {
         let color = ramp(i as f64 / last);
+        // The gaps of a curve on top of others show those.
+        let covered = panel[..i].iter().filter(|other| coincide(one, other)).count();
+        let dashes = if covered > 0 { format!(" stroke-dasharray=\"7 {}\"", 7 * covered) } else { String::new() };
         let point = |sample: &_| {
             let (theta, albedo): (f64, f64) = theta_and_albedo(sample);
             albedo.is_finite().then(|| format!("{:.1},{:.1}", x(theta), y(albedo)))
@@ -56,7 +59,7 @@ fn draw_panel(panel: &[Checked], panel_y: f64, top: f64) -> String {
         let points: Vec<String> = one.report.albedo.curve.iter().filter_map(point).collect();
         let _ = writeln!(
             svg,
-            "<polyline fill=\"none\" stroke=\"{color}\" stroke-width=\"1.8\" points=\"{}\"/>",
+            "<polyline fill=\"none\" stroke=\"{color}\" stroke-width=\"1.8\"{dashes} points=\"{}\"/>",
             points.join(" ")
         );
         let (legend_x, legend_y) = (LEFT + PLOT_WIDTH + 24.0, panel_y + TOP + 8.0 + LEGEND_LINE * i as f64);
@@ -70,6 +73,12 @@ fn draw_panel(panel: &[Checked], panel_y: f64, top: f64) -> String {
         );
     }
     svg
+}
+
+/// Whether two curves are less than a line's width apart everywhere.
+fn coincide(a: &Checked, b: &Checked) -> bool {
+    let (a, b) = (&a.report.albedo.curve, &b.report.albedo.curve);
+    a.iter().zip(b).all(|(a, b)| (theta_and_albedo(a).1 - theta_and_albedo(b).1).abs() < 0.005)
 }
 
 fn theta_and_albedo(sample: &crate::reference::laws::AlbedoSample) -> (f64, f64) {

@@ -32,9 +32,9 @@ pub fn directional_albedo(brdf: &dyn Brdf, v: DVec3, accuracy: Accuracy) -> Esti
     Polar::over_light(brdf.lobe(), v, brdf.is_isotropic(), accuracy, |l| f(l) * l.z)
 }
 
-/// Albedos at 30 angles, and at twice 8 azimuths where these matter; then nearer and nearer to the largest.
+/// Albedos at 30 angles, and at 16 azimuths where these matter; then nearer and nearer to the largest.
 pub fn check_albedo(brdf: &dyn Brdf, accuracy: Accuracy) -> AlbedoReport {
-    let azimuths: u32 = if brdf.is_isotropic() { 1 } else { 8 };
+    let azimuths: u32 = if brdf.is_isotropic() { 1 } else { 16 };
     let sample = |root: f64, turn: f64| {
         let v = direction(root, turn);
         AlbedoSample { v, albedo: directional_albedo(brdf, v, accuracy) }
