@@ -145,8 +145,9 @@ mod tests {
     }
 
     #[test]
-    fn a_tolerance_of_nothing_is_passed_by_what_loses_light_alone() {
-        let table = checked("--perceptual-roughness 0.5 --metallic 1 --tolerance 0");
+    fn a_broken_law_is_reported() {
+        // Mirrors reflect up to 6e-4 too much at the horizon, from the interpolation of the table of albedo.
+        let table = checked("--perceptual-roughness 0 --metallic 1 --tolerance 0");
         assert_ne!(table[0].violations, []);
         let text = table::text(&table);
         assert!(text.contains("BROKEN"), "{text}");

@@ -19,6 +19,9 @@ use super::quadrature::adaptive::Accuracy;
 /// the standard material reads is good to 3e-4, so that finer would measure its interpolation.
 pub const ACCURACY: Accuracy = Accuracy { absolute: 2e-5, evaluations: 60_000 };
 
+/// What the order of float64 operations may change of f, relative.
+const ROUNDING: f64 = 1e-9;
+
 /// What was found for one BRDF.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawReport {
@@ -55,7 +58,7 @@ impl LawReport {
     /// light that arrives for energy, of the macroscopic area for facets. No f below 0 is tolerated.
     pub fn violations(&self, tolerance: f64) -> Vec<Violation> {
         let mut violations = Vec::new();
-        if exceeds(self.pairs.relative_difference, tolerance) {
+        if exceeds(self.pairs.relative_difference, tolerance.max(ROUNDING)) {
             violations.push(Violation::Reciprocity(self.pairs.relative_difference));
         }
         if exceeds(-self.pairs.smallest, 0.0) {

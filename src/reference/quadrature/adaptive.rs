@@ -30,7 +30,8 @@ impl Integrable for DVec3 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate<T> {
     pub value: T,
-    /// Absolute, of the largest component. Conservative: the difference between the rule and the one of half the nodes.
+    /// Absolute, of the largest component: the difference between the rule and the one of half the nodes. Far too high
+    /// for what is smooth; too low where a feature falls between all nodes, which no quadrature can tell.
     pub error: f64,
     pub evaluations: u64,
 }
