@@ -178,6 +178,10 @@ mod tests {
         assert!(error("--ior 0.5").contains("ior is 0.5"));
         assert!(error("--ndf ellipsoid --tilt 89").contains("tilt_rad"));
         assert!(error("--fresnel conductor").contains("--metal"));
+        assert!(error("--ndf ggx --anisotropy 0.5").contains("--ndf ggx-anisotropic"));
+        assert!(error("--ndf ggx-anisotropic --tilt 5").contains("--ndf ellipsoid"));
+        assert!(Command::try_parse_from(["furnace", "--metal", "au"]).is_err());
+        assert!(Command::try_parse_from(["furnace", "--tilt", "5"]).is_err());
         assert!(Command::try_parse_from(["furnace", "--perceptual-roughness", "0..1"]).is_err());
         assert!(Command::try_parse_from(["furnace", "--geometry", "none"]).is_err());
         assert!(Command::try_parse_from(["furnace", "--geometry", "smith-separable", "--metallic", "1"]).is_err());

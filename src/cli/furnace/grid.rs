@@ -51,16 +51,16 @@ struct LobeArgs {
     #[arg(long, value_enum, conflicts_with = "model")]
     fresnel: Option<FresnelArg>,
     /// From 0 to 1: alpha_x and alpha_y are alpha divided by and times sqrt(1 - 0.9 anisotropy) (Burley 2012).
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, requires = "ndf")]
     anisotropy: f64,
     /// Turns the axes of the anisotropy about the normal.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true, requires = "ndf")]
     rotation: f64,
     /// Lean of the ellipsoid's predominant normal, along the tangent.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "ndf")]
     tilt: f64,
     /// Metal of the table, for lazanyi, f82 and conductor: ag, al, au, cu, cuzn, fe, ti.
-    #[arg(long, value_name = "SYMBOL", value_parser = parse_metal)]
+    #[arg(long, value_name = "SYMBOL", value_parser = parse_metal, requires = "fresnel")]
     metal: Option<Metal>,
 }
 
@@ -175,7 +175,14 @@ impl LobeArgs {
         ParameterError::check_unit("anisotropy", self.anisotropy)?;
         let aspect = (1.0 - 0.9 * self.anisotropy).sqrt();
         let (alpha_x, alpha_y, rotation_rad) = (alpha / aspect, alpha * aspect, self.rotation.to_radians());
-        let distribution = match self.ndf.unwrap_or(NdfArg::Ggx) {
+        let ndf = self.ndf.unwrap_or(NdfArg::Ggx);
+        if ndf == NdfArg::Ggx && (self.anisotropy != 0.0 || self.rotation != 0.0) {
+            return Err(CliError::Usage("--anisotropy and --rotation need --ndf ggx-anisotropic or ellipsoid".into()));
+        }
+        if ndf != NdfArg::Ellipsoid && self.tilt != 0.0 {
+            return Err(CliError::Usage("--tilt needs --ndf ellipsoid".into()));
+        }
+        let distribution = match ndf {
             NdfArg::Ggx => Distribution::ggx(alpha)?,
             NdfArg::GgxAnisotropic => Distribution::ggx_anisotropic(alpha_x, alpha_y, rotation_rad)?,
             NdfArg::Ellipsoid => {
