@@ -5,6 +5,7 @@ mod camera;
 mod color;
 mod environment;
 mod error;
+mod furnace;
 mod light;
 mod output;
 mod progress;
@@ -26,6 +27,8 @@ struct Cli {
 enum Command {
     /// Render a model to a picture.
     Render(Box<render::RenderArgs>),
+    /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
+    Furnace(Box<furnace::FurnaceArgs>),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
 }
@@ -36,6 +39,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        Command::Furnace(args) => furnace::run(&args),
         Command::Bake(args) => bake::run(&args),
     };
     match result {

@@ -83,8 +83,8 @@ struct LookArgs {
     #[arg(long, value_enum, default_value = "on")]
     energy_compensation: Switch,
     /// How microfacets hide each other, for punctual lights.
-    #[arg(long, value_enum, default_value = "smith-correlated")]
-    geometry: GeometryArg,
+    #[arg(long, value_name = "MODEL", default_value = "smith-correlated", value_parser = parse_geometry)]
+    geometry: Geometry,
 }
 
 #[derive(Debug, clap::Args)]
@@ -113,7 +113,7 @@ struct DriverArgs {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Switch {
+pub(super) enum Switch {
     On,
     Off,
 }
@@ -149,27 +149,6 @@ enum ToneMapArg {
     None,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum GeometryArg {
-    SmithCorrelated,
-    SmithSeparable,
-    SchlickHalfAlpha,
-    SchlickKaris,
-    SchlickLecture,
-}
-
-impl From<GeometryArg> for Geometry {
-    fn from(arg: GeometryArg) -> Self {
-        match arg {
-            GeometryArg::SmithCorrelated => Self::SmithCorrelated,
-            GeometryArg::SmithSeparable => Self::SmithSeparable,
-            GeometryArg::SchlickHalfAlpha => Self::SchlickHalfAlpha,
-            GeometryArg::SchlickKaris => Self::SchlickKaris,
-            GeometryArg::SchlickLecture => Self::SchlickLecture,
-        }
-    }
-}
-
 impl From<ToneMapArg> for ToneMap {
     fn from(arg: ToneMapArg) -> Self {
         match arg {
@@ -190,6 +169,11 @@ fn parse_size(text: &str) -> Result<UVec2, String> {
         _ => Err(format!("`{text}` is not a number of pixels from 1 to {SIDE_MAX}")),
     };
     Ok(UVec2::new(side(width)?, side(height)?))
+}
+
+fn parse_geometry(text: &str) -> Result<Geometry, String> {
+    let names = || Geometry::ALL.map(Geometry::name).join(", ");
+    Geometry::by_name(text).ok_or_else(|| format!("expected one of {}", names()))
 }
 
 fn parse_background(text: &str) -> Result<Background, String> {
@@ -286,14 +270,18 @@ fn load(args: &RenderArgs, progress: &dyn Progress) -> Result<Imported, CliError
         Ok(index) => SceneChoice::Index(index),
         Err(_) => SceneChoice::Name(scene.clone()),
     });
-    let options = ImportOptions { scene, progress, ..Default::default() };
-    if args.model != Path::new("-") {
-        return Ok(model_from_path(&args.model, &options)?);
+    load_model(&args.model, &ImportOptions { scene, progress, ..Default::default() })
+}
+
+/// The model of a file, or of stdin for `-`.
+pub(super) fn load_model(path: &Path, options: &ImportOptions<'_>) -> Result<Imported, CliError> {
+    if path != Path::new("-") {
+        return Ok(model_from_path(path, options)?);
     }
     let mut bytes = Vec::new();
     let read = std::io::stdin().lock().read_to_end(&mut bytes);
     read.map_err(|error| CliError::Usage(format!("stdin: cannot read the model: {error}")))?;
-    Ok(model_from_slice(&bytes, "stdin", None, &options)?)
+    Ok(model_from_slice(&bytes, "stdin", None, options)?)
 }
 
 impl RenderArgs {
@@ -320,7 +308,7 @@ impl RenderArgs {
             tone_map: self.look.tone_map.into(),
             background,
             energy_compensation: self.look.energy_compensation == Switch::On,
-            geometry: self.look.geometry.into(),
+            geometry: self.look.geometry,
         })
     }
 }

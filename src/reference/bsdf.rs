@@ -31,6 +31,16 @@ pub struct SurfaceMaterial {
     pub anisotropy: Option<Anisotropy>,
 }
 
+impl SurfaceMaterial {
+    /// How the microfacets are spread; of anisotropic ones, alpha_x is along [`Anisotropy::tangent`].
+    pub fn distribution(&self) -> Distribution {
+        let alpha = alpha_from_perceptual_roughness(self.perceptual_roughness);
+        let Some(Anisotropy { strength, .. }) = self.anisotropy else { return Distribution::Ggx { alpha } };
+        let alpha_x = alpha + (1.0 - alpha) * strength * strength;
+        Distribution::GgxAnisotropic { alpha_x, alpha_y: alpha, rotation_rad: 0.0 }
+    }
+}
+
 /// The wide direction of anisotropic microfacets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anisotropy {
@@ -54,6 +64,12 @@ impl Default for ModelChoices {
     fn default() -> Self {
         Self { energy_compensation: true, geometry: Geometry::default() }
     }
+}
+
+/// F0 and F90 of a dielectric interface to air (docs/model.md, "Material"): `ior` is 0 or from 1 up, `specular` in [0, 1].
+pub fn dielectric_reflectance(ior: f64, specular: f64, specular_color: DVec3) -> (DVec3, f64) {
+    let f0 = (specular_color * ((ior - 1.0) / (ior + 1.0)).powi(2)).clamp(DVec3::ZERO, DVec3::ONE);
+    (f0 * specular, specular)
 }
 
 /// A specular lobe's Fresnel factor and its multiple scattering.
@@ -137,17 +153,9 @@ impl<'a> Bsdf<'a> {
         let E_s = |scale: f64, bias: f64| f0 * scale + f90 * bias + F_ms * (1.0 - scale - bias);
         let coupling =
             Coupling { f0, F_ms, E_s_v: E_s(dfg_v.scale, dfg_v.bias), E_s_avg: E_s(dfg_avg.scale, dfg_avg.bias) };
-        let alpha = alpha_from_perceptual_roughness(r);
-        let (tangent, bitangent, distribution) = match material.anisotropy {
-            None => {
-                let (tangent, bitangent) = orthonormal_basis(normal);
-                (tangent, bitangent, Distribution::Ggx { alpha })
-            }
-            Some(Anisotropy { tangent, bitangent, strength }) => {
-                let alpha_x = alpha + (1.0 - alpha) * strength * strength;
-                (tangent, bitangent, Distribution::GgxAnisotropic { alpha_x, alpha_y: alpha, rotation_rad: 0.0 })
-            }
-        };
+        let distribution = material.distribution();
+        let (tangent, bitangent) =
+            material.anisotropy.map_or_else(|| orthonormal_basis(normal), |facets| (facets.tangent, facets.bitangent));
         let local_from_world = DMat3::from_cols(tangent, bitangent, normal).transpose();
         let mut view = local_from_world * view;
         view.z = NoV;

@@ -19,6 +19,9 @@ use super::quadrature::adaptive::Accuracy;
 /// the standard material reads is good to 3e-4, so that finer would measure its interpolation.
 pub const ACCURACY: Accuracy = Accuracy { absolute: 2e-5, evaluations: 60_000 };
 
+/// What the order of float64 operations may change of f, relative.
+const ROUNDING: f64 = 1e-9;
+
 /// What was found for one BRDF.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawReport {
@@ -54,26 +57,30 @@ impl LawReport {
     /// The laws that are broken by more than `tolerance`: a relative difference of f for reciprocity, a share of the
     /// light that arrives for energy, of the macroscopic area for facets. No f below 0 is tolerated.
     pub fn violations(&self, tolerance: f64) -> Vec<Violation> {
-        let beyond = |value: f64, limit: f64| !(value <= limit);
         let mut violations = Vec::new();
-        if beyond(self.pairs.relative_difference, tolerance) {
+        if exceeds(self.pairs.relative_difference, tolerance.max(ROUNDING)) {
             violations.push(Violation::Reciprocity(self.pairs.relative_difference));
         }
-        if beyond(-self.pairs.smallest, 0.0) {
+        if exceeds(-self.pairs.smallest, 0.0) {
             violations.push(Violation::Positivity(self.pairs.smallest));
         }
         // What the quadrature cannot tell apart from 1 breaks nothing.
         let largest = self.albedo.largest.albedo.value.max_element() - self.albedo.largest.albedo.error;
-        if beyond(largest, 1.0 + tolerance) {
+        if exceeds(largest, 1.0 + tolerance) {
             violations.push(Violation::Energy(largest));
         }
         if let Some(facets) = &self.facets
-            && beyond(facets.difference - facets.error, tolerance)
+            && exceeds(facets.difference - facets.error, tolerance)
         {
             violations.push(Violation::Facets(facets.difference));
         }
         violations
     }
+}
+
+/// Whether `value` is above `limit`, or no number: of several, NaN is the worst.
+fn exceeds(value: f64, limit: f64) -> bool {
+    value > limit || value.is_nan()
 }
 
 #[cfg(test)]

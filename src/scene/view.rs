@@ -65,6 +65,11 @@ impl Geometry {
             Self::SchlickLecture => "schlick-lecture",
         }
     }
+
+    /// The model of a name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|geometry| geometry.name() == name)
+    }
 }
 
 /// A picture to be taken of a scene.

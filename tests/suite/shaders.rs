@@ -26,7 +26,7 @@ pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
     let of_slots = |slots: u32| {
         let (material, primitive) = (material(slots), primitive(slots));
         [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
-            let scene_features = SceneFeatures { punctual, environment, fresnel_tail: slots % 3 > 0 };
+            let scene_features = SceneFeatures { punctual, environment, fresnel_tail: !slots.is_multiple_of(3) };
             let features = MaterialFeatures::of(&material, &primitive, &scene, scene_features.is_lit());
             ForwardFeatures {
                 scene: scene_features,

@@ -1,6 +1,7 @@
 //! Energy: the directional albedo of a BRDF, for light from everywhere.
 
 use super::brdf::Brdf;
+use super::exceeds;
 use super::hemisphere::Polar;
 use crate::reference::quadrature::adaptive::{Accuracy, Estimate, kronrod_nodes};
 use glam::DVec3;
@@ -31,9 +32,9 @@ pub fn directional_albedo(brdf: &dyn Brdf, v: DVec3, accuracy: Accuracy) -> Esti
     Polar::over_light(brdf.lobe(), v, brdf.is_isotropic(), accuracy, |l| f(l) * l.z)
 }
 
-/// Albedos at 30 angles, and at twice 8 azimuths where these matter; then nearer and nearer to the largest.
+/// Albedos at 30 angles, and at 16 azimuths where these matter; then nearer and nearer to the largest.
 pub fn check_albedo(brdf: &dyn Brdf, accuracy: Accuracy) -> AlbedoReport {
-    let azimuths: u32 = if brdf.is_isotropic() { 1 } else { 8 };
+    let azimuths: u32 = if brdf.is_isotropic() { 1 } else { 16 };
     let sample = |root: f64, turn: f64| {
         let v = direction(root, turn);
         AlbedoSample { v, albedo: directional_albedo(brdf, v, accuracy) }
@@ -86,8 +87,7 @@ struct Largest {
 
 impl Largest {
     fn take_larger(&mut self, root: f64, turn: f64, sample: AlbedoSample) {
-        // NaN is larger than anything.
-        if !(sample.albedo.value.max_element() <= self.sample.albedo.value.max_element()) {
+        if exceeds(sample.albedo.value.max_element(), self.sample.albedo.value.max_element()) {
             *self = Self { root, turn, sample };
         }
     }

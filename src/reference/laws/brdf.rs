@@ -1,7 +1,6 @@
 //! What the laws are checked on.
 
 use crate::reference::albedo::DirectionalAlbedo;
-use crate::reference::brdf::alpha_from_perceptual_roughness;
 use crate::reference::bsdf::{Bsdf, ModelChoices, SurfaceMaterial};
 use crate::reference::microfacet::{Distribution, Microfacet};
 use glam::DVec3;
@@ -81,11 +80,11 @@ impl Brdf for StandardBrdf<'_> {
     }
 
     fn lobe(&self) -> Lobe {
-        Lobe::round(alpha_from_perceptual_roughness(self.material.perceptual_roughness))
+        Lobe::of(&self.material.distribution())
     }
 
     fn is_isotropic(&self) -> bool {
-        true
+        self.material.anisotropy.is_none()
     }
 }
 

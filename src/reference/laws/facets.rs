@@ -1,6 +1,7 @@
 //! Facets cover the surface that they make up, seen from anywhere.
 
 use super::brdf::Lobe;
+use super::exceeds;
 use super::hemisphere::Polar;
 use crate::reference::microfacet::Distribution;
 use crate::reference::quadrature::adaptive::{Accuracy, Estimate};
@@ -49,8 +50,7 @@ pub fn check_facets(distribution: &Distribution, accuracy: Accuracy) -> FacetRep
             let shadow = (projected_area(distribution, v, accuracy), distribution.projected_area(v));
             for (found, expected) in [signed, shadow] {
                 let difference = (found.value - expected).abs();
-                // NaN is the worst of all.
-                if !(difference <= worst.difference) {
+                if exceeds(difference, worst.difference) {
                     worst = FacetReport { difference, v, error: found.error };
                 }
             }

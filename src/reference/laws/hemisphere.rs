@@ -45,7 +45,8 @@ impl Polar {
         accuracy: Accuracy,
         f: impl Fn(DVec3) -> T,
     ) -> Estimate<T> {
-        // Across a lobe that is `aspect` times as long as wide, 15 nodes all around may all miss it.
+        // Across a lobe that is `aspect` times as long as wide, a rule with too few cells all around would miss its flanks, and its
+        // error with them.
         let cells = if symmetric { 1 } else { self.aspect.ceil().clamp(4.0, 64.0) as usize };
         let edge = |j: usize| if symmetric { j as f64 } else { 2.0 * j as f64 / cells as f64 - 1.0 };
         // The range is the integer part of x.

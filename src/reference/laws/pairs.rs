@@ -1,6 +1,7 @@
 //! Reciprocity and positivity, over a fixed set of pairs of directions.
 
 use super::brdf::Brdf;
+use super::exceeds;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -26,7 +27,7 @@ pub fn check_pairs(brdf: &dyn Brdf) -> PairReport {
         let (forth, back) = (brdf.evaluate(v, l), brdf.evaluate(l, v));
         report.pairs += 1;
         let difference = relative_difference(forth, back);
-        if !(difference <= report.relative_difference) {
+        if exceeds(difference, report.relative_difference) {
             (report.relative_difference, report.pair) = (difference, [v, l]);
         }
         for f in [forth, back] {
@@ -51,9 +52,9 @@ fn pair(brdf: &dyn Brdf, i: u32) -> Option<[DVec3; 2]> {
     const ROOT: f64 = 1.167_303_978_261_418_7;
     let u = |dimension: i32| (0.5 + f64::from(i) / ROOT.powi(dimension)).fract();
     // Every third view is grazing.
-    let v = direction(if i % 3 == 0 { u(1).powi(4) } else { u(1) }, u(2));
-    let l = if i % 2 == 0 {
-        direction(if i % 4 == 0 { u(3).powi(4) } else { u(3) }, u(4))
+    let v = direction(if i.is_multiple_of(3) { u(1).powi(4) } else { u(1) }, u(2));
+    let l = if i.is_multiple_of(2) {
+        direction(if i.is_multiple_of(4) { u(3).powi(4) } else { u(3) }, u(4))
     } else {
         let lobe = brdf.lobe();
         // GGX's own density of half vectors: tan = alpha sqrt(u / (1 - u)).

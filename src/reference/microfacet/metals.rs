@@ -165,6 +165,17 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_documentation_lists_the_table() {
+        let document = include_str!("../../../docs/microfacets.md");
+        for metal in METALS {
+            let three = |color: DVec3| color.to_array().map(|channel| format!("{channel:.3}")).join(" ");
+            let name = metal.name.split(' ').next().unwrap();
+            let row = format!("| {name} | {} | {} |\n", three(metal.f0()), three(metal.a));
+            assert!(document.contains(&row), "docs/microfacets.md has another row than\n{row}");
+        }
+    }
+
     /// Largest difference from the exact curve, of each metal and channel.
     fn largest_errors(approximate: impl Fn(&Metal) -> Fresnel) -> Vec<f64> {
         let of_metal = |metal: &Metal| {
