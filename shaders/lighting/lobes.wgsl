@@ -39,22 +39,26 @@ fn make_lobes(surface: Surface) -> Lobes {
     let r = surface.perceptual_roughness;
     let v = normalize(surface.v + surface.n * max(NOV_MIN - dot(surface.n, surface.v), 0.0));
     let NoV = clamp(dot(surface.n, v), NOV_MIN, 1.0);
-    let table = dfg(r, NoV);
+    let shape = make_shape(surface, max(r * r, ALPHA_MIN));
+    let table_r = albedo_perceptual_roughness(shape, r, v);
+    let table = dfg(table_r, NoV);
+    let average = albedo_average(shape, table);
     let E = table.x + table.y;
-    let E_avg = table.z + table.w;
+    let E_avg = average.x + average.y;
 
     let dielectric_F0 = min(surface.dielectric_F0 * surface.specular_color, vec3f(1.0)) * surface.specular;
-    let dielectric_F_ms = F_multiscatter(F_Schlick_average(dielectric_F0, surface.specular), E_avg);
-    let metal_F_ms = F_multiscatter(metal_average(surface), E_avg);
+    let share = compensated_share(shape);
+    let dielectric_F_ms = F_multiscatter(F_Schlick_average(dielectric_F0, surface.specular), E_avg) * share;
+    let metal_F_ms = F_multiscatter(metal_average(surface), E_avg) * share;
 
     var lobes: Lobes;
     lobes.n = surface.n;
     lobes.v = v;
     lobes.NoV = NoV;
     lobes.perceptual_roughness = r;
-    lobes.shape = make_shape(surface, max(r * r, ALPHA_MIN));
+    lobes.shape = shape;
     lobes.fresnel = make_fresnel(surface, dielectric_F0);
-    lobes.single_scatter = single_scatter(lobes.fresnel, table, r, NoV);
+    lobes.single_scatter = single_scatter(lobes.fresnel, table, table_r, NoV);
     lobes.multiscatter = mix(dielectric_F_ms, metal_F_ms, surface.metallic) * max(1.0 - E, 0.0);
     lobes.multiscatter_norm = INV_PI / max(1.0 - E_avg, LOSS_MIN);
 
@@ -62,7 +66,7 @@ fn make_lobes(surface: Surface) -> Lobes {
     lobes.coat_F90 = surface.specular;
     lobes.coat_F_ms = max(dielectric_F_ms.x, max(dielectric_F_ms.y, dielectric_F_ms.z));
     let E_s = E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, table.x, table.y);
-    let E_s_avg = E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, table.z, table.w);
+    let E_s_avg = E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, average.x, average.y);
     lobes.diffuse = surface.base_color * ((1.0 - surface.metallic) * (1.0 - E_s));
     lobes.diffuse_norm = Fd_Lambert() / max(1.0 - E_s_avg, LOSS_MIN);
     return lobes;
@@ -77,7 +81,7 @@ fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let F = reflectance(lobes.fresnel, VoH);
     let DV = D_V(lobes.shape, lobes.n, lobes.v, l, h, lobes.NoV, NoL);
 
-    let table = dfg(lobes.perceptual_roughness, NoL);
+    let table = dfg(albedo_perceptual_roughness(lobes.shape, lobes.perceptual_roughness, l), NoL);
     let loss = max(1.0 - table.x - table.y, 0.0);
     let passed = 1.0 - E_specular(lobes.coat_F0, lobes.coat_F90, lobes.coat_F_ms, table.x, table.y);
     let smooth_part = lobes.multiscatter * (lobes.multiscatter_norm * loss) + lobes.diffuse * (lobes.diffuse_norm * passed);

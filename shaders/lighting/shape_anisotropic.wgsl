@@ -1,5 +1,6 @@
 #import "brdf/d_ggx_anisotropic.wgsl"
 #import "math/vectors.wgsl"
+#import "lighting/dfg.wgsl"
 #import <visibility_anisotropic>
 
 // How the microfacets are spread: wider along t than along b.
@@ -7,13 +8,19 @@ struct Shape {
     alpha: f32,
     alpha_t: f32,
     t: vec3f,
+    // Mean of both alpha^2, and their contrast.
+    mean: f32,
     b: vec3f,
+    contrast: f32,
 }
 
 // KHR_materials_anisotropy: along t the spread grows to 1 with the square of the strength.
 fn make_shape(surface: Surface, alpha: f32) -> Shape {
     let strength = surface.tangents.strength;
-    return Shape(alpha, mix(alpha, 1.0, strength * strength), surface.tangents.t, surface.tangents.b);
+    let alpha_t = mix(alpha, 1.0, strength * strength);
+    let t2 = alpha_t * alpha_t;
+    let b2 = alpha * alpha;
+    return Shape(alpha, alpha_t, surface.tangents.t, 0.5 * (t2 + b2), surface.tangents.b, (t2 - b2) / (t2 + b2));
 }
 
 // D V of the specular lobe.
@@ -23,11 +30,30 @@ fn D_V(shape: Shape, n: vec3f, v: vec3f, l: vec3f, h: vec3f, NoV: f32, NoL: f32)
         shape.alpha_t, shape.alpha, dot(shape.t, v), dot(shape.b, v), dot(shape.t, l), dot(shape.b, l), NoV, NoL);
 }
 
+// Where the tables of albedo are read for a direction: the perceptual roughness of isotropic facets of about the same
+// albedo. Fitted to albedos by quadrature; light and view are read apart, so they can still be exchanged.
+fn albedo_perceptual_roughness(shape: Shape, perceptual_roughness: f32, x: vec3f) -> f32 {
+    let along = dot(shape.t, x);
+    let across = dot(shape.b, x);
+    let lean = 0.4 * shape.contrast * (along * along - across * across);
+    return sqrt(sqrt(shape.mean * (1.0 - 0.2 * shape.contrast * shape.contrast - lean)));
+}
+
+// Averages of the tables over directions.
+fn albedo_average(shape: Shape, table: vec4f) -> vec2f {
+    return dfg(sqrt(sqrt(shape.mean * (1.0 - 0.2 * shape.contrast * shape.contrast))), 1.0).zw;
+}
+
+// How much of the energy lost by single scattering is given back. The albedo is known within a few hundredths only, so
+// this fades with the contrast: no body may be brighter than the light that falls on it.
+fn compensated_share(shape: Shape) -> f32 {
+    return 1.0 - shape.contrast * shape.contrast;
+}
+
 // Where the specular lobe looks for the environment. Facets lean along t, and those that reflect toward the viewer lean
 // toward it: the normal is bent to the viewer's side within the plane of t and n (after McAuley 2015), the more so the
 // wider the spread along t is than along b.
 fn mirror_direction(shape: Shape, n: vec3f, v: vec3f) -> vec3f {
     let leaning = normalize_or(v - shape.b * dot(shape.b, v), n);
-    let bend = (shape.alpha_t - shape.alpha) / (shape.alpha_t + shape.alpha);
-    return reflect(-v, normalize_or(mix(n, leaning, 0.5 * bend), n));
+    return reflect(-v, normalize_or(mix(n, leaning, 0.5 * shape.contrast), n));
 }

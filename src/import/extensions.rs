@@ -7,8 +7,9 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 /// The extensions that are imported.
-pub const SUPPORTED_EXTENSIONS: [&str; 7] = [
+pub const SUPPORTED_EXTENSIONS: [&str; 8] = [
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
@@ -101,6 +102,16 @@ pub(super) struct Specular {
     #[serde(default = "white")]
     pub(super) specular_color_factor: [f32; 3],
     pub(super) specular_color_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Anisotropy {
+    #[serde(default)]
+    pub(super) anisotropy_strength: f32,
+    #[serde(default)]
+    pub(super) anisotropy_rotation: f32,
+    pub(super) anisotropy_texture: Option<TextureInfo>,
 }
 
 /// The lights of the document.

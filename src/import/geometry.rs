@@ -4,7 +4,7 @@ use super::accessor::Accessors;
 use super::error::{Fault, Notes};
 use super::vertices::{self, Vertices};
 use super::{normals, tangents, topology};
-use crate::scene::{Material, Primitive, TextureSlot, Topology};
+use crate::scene::{Material, Primitive, TextureRef, TextureSlot, Topology};
 use gltf::json;
 use gltf::json::validation::Checked;
 
@@ -35,11 +35,24 @@ pub(super) fn build(
     let topology = topology::topology(mode);
     let mut shape = Shape { vertices, indices };
     shape.complete_normals(topology, accessors, here, notes)?;
-    let normal_uv_set = appearance.texture(TextureSlot::Normal).map(|texture| texture.uv_set as usize);
-    shape.complete_tangents(topology, normal_uv_set, accessors, here)?;
+    let uv_set = tangent_uv_set(appearance, &shape.vertices);
+    if appearance.anisotropy_strength > 0.0 && uv_set.is_none() && shape.vertices.tangents.is_none() {
+        notes.add(
+            here,
+            "has neither tangents nor texture coordinates, so its anisotropy has no direction and is ignored",
+        );
+    }
+    shape.complete_tangents(topology, uv_set, accessors, here)?;
 
     let Shape { vertices: Vertices { positions, normals, tangents, uvs, colors }, indices } = shape;
     Ok(Some(Primitive { topology, positions, normals, tangents, uvs, colors, indices, material }))
+}
+
+/// The texture coordinates whose directions a material needs along the surface, if it needs any.
+fn tangent_uv_set(appearance: &Material, vertices: &Vertices) -> Option<usize> {
+    let of_texture = |slot| appearance.texture(slot).map(|texture: &TextureRef| texture.uv_set as usize);
+    let of_mesh = || (appearance.anisotropy_strength > 0.0 && !vertices.uvs.is_empty()).then_some(0);
+    of_texture(TextureSlot::Normal).or_else(|| of_texture(TextureSlot::Anisotropy)).or_else(of_mesh)
 }
 
 /// The primitive's indices, each below `vertex_count`; 0, 1, 2... when it has none.
@@ -111,7 +124,7 @@ impl Shape {
         Ok(())
     }
 
-    /// Tangents are made where a normal texture, with the texture coordinates `uv_set`, needs them.
+    /// Tangents are made along the texture coordinates `uv_set`, where something needs them.
     fn complete_tangents(
         &mut self,
         topology: Topology,

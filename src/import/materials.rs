@@ -1,7 +1,7 @@
 //! Materials: metallic-roughness and the extensions that refine it, with every number in its range.
 
 use super::error::{Fault, Notes};
-use super::extensions::{self, EmissiveStrength, Ior, Specular, TextureInfo, TextureTransform};
+use super::extensions::{self, Anisotropy, EmissiveStrength, Ior, Specular, TextureInfo, TextureTransform};
 use super::references::within;
 use super::vertices::MAX_UV_SETS;
 use crate::scene::{AlphaMode, Material, TextureRef, TextureSlot, UvTransform};
@@ -116,6 +116,16 @@ impl Reader<'_> {
                     let texture = self.texture((index, tex_coord, Some(&extensions)), &name(member))?;
                     material.set_texture(slot, texture);
                 }
+            }
+        }
+        if let Some(anisotropy) = extensions::find::<Anisotropy>(raw, "KHR_materials_anisotropy", &here)? {
+            let name = |member: &str| format!("extensions/KHR_materials_anisotropy/{member}");
+            material.anisotropy_strength = self.unit(anisotropy.anisotropy_strength, &name("anisotropyStrength"));
+            material.anisotropy_rotation_rad =
+                self.finite(anisotropy.anisotropy_rotation, 0.0, &name("anisotropyRotation"));
+            if let Some(TextureInfo { index, tex_coord, extensions }) = anisotropy.anisotropy_texture {
+                let texture = self.texture((index, tex_coord, Some(&extensions)), &name("anisotropyTexture"))?;
+                material.set_texture(TextureSlot::Anisotropy, texture);
             }
         }
         Ok(())

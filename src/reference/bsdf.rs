@@ -2,7 +2,7 @@
 
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
-use super::albedo::DirectionalAlbedo;
+use super::albedo::{Dfg, DirectionalAlbedo};
 use super::brdf::{
     F_KullaConty, F_Schlick, F_Schlick_average, Fd_Coupled, alpha_from_perceptual_roughness, f_KullaConty,
 };
@@ -110,13 +110,6 @@ struct Coupling {
     E_s_avg: f64,
 }
 
-impl Interface {
-    fn new(f0: DVec3, f90: f64, E_avg: f64, energy_compensation: bool) -> Self {
-        let F_ms = if energy_compensation { F_KullaConty(F_Schlick_average(f0, f90), E_avg) } else { DVec3::ZERO };
-        Self { f0, f90, F_ms }
-    }
-}
-
 /// Directions of view below this cosine are lifted to it (docs/model.md).
 pub const SMALLEST_NOV: f64 = 1e-4;
 
@@ -135,30 +128,27 @@ impl<'a> Bsdf<'a> {
         view: DVec3,
         choices: ModelChoices,
     ) -> Self {
-        let energy_compensation = choices.energy_compensation;
-        let r = material.perceptual_roughness;
-        let view = lift_view(normal, view);
-        let NoV = normal.dot(view).clamp(SMALLEST_NOV, 1.0);
-        let (dfg_v, dfg_avg) = (table.dfg(r, NoV), table.average(r));
-        let (E_v, E_avg) = (dfg_v.albedo(), dfg_avg.albedo());
-        let dielectric = Interface::new(material.dielectric_f0, material.dielectric_f90, E_avg, energy_compensation);
-        let mut metal = Interface::new(material.base_color, 1.0, E_avg, energy_compensation);
-        if energy_compensation {
-            metal.F_ms = F_KullaConty(metal_average(&material), E_avg);
-        }
-
-        let strongest = DVec3::splat(material.dielectric_f0.max_element());
-        let strongest = Interface::new(strongest, material.dielectric_f90, E_avg, energy_compensation);
-        let (f0, f90, F_ms) = (strongest.f0.x, strongest.f90, strongest.F_ms.x);
-        let E_s = |scale: f64, bias: f64| f0 * scale + f90 * bias + F_ms * (1.0 - scale - bias);
-        let coupling =
-            Coupling { f0, F_ms, E_s_v: E_s(dfg_v.scale, dfg_v.bias), E_s_avg: E_s(dfg_avg.scale, dfg_avg.bias) };
         let distribution = material.distribution();
         let (tangent, bitangent) =
             material.anisotropy.map_or_else(|| orthonormal_basis(normal), |facets| (facets.tangent, facets.bitangent));
         let local_from_world = DMat3::from_cols(tangent, bitangent, normal).transpose();
-        let mut view = local_from_world * view;
-        view.z = NoV;
+        let view = lift_view(normal, view);
+        let NoV = normal.dot(view).clamp(SMALLEST_NOV, 1.0);
+        let view = (local_from_world * view).with_z(NoV);
+        let dfg_v = table.dfg(perceptual_roughness_toward(&distribution, view), NoV);
+        let dfg_avg = average(table, &distribution);
+        let (E_v, E_avg) = (dfg_v.albedo(), dfg_avg.albedo());
+        let share = if choices.energy_compensation { compensated_share(&distribution) } else { 0.0 };
+        let F_ms = |F_avg| F_KullaConty(F_avg, E_avg) * share;
+        let interface = |f0, f90| Interface { f0, f90, F_ms: F_ms(F_Schlick_average(f0, f90)) };
+        let dielectric = interface(material.dielectric_f0, material.dielectric_f90);
+        let metal = Interface { f0: material.base_color, f90: 1.0, F_ms: F_ms(metal_average(&material)) };
+
+        let strongest = interface(DVec3::splat(material.dielectric_f0.max_element()), material.dielectric_f90);
+        let (f0, f90, F_ms) = (strongest.f0.x, strongest.f90, strongest.F_ms.x);
+        let E_s = |scale: f64, bias: f64| f0 * scale + f90 * bias + F_ms * (1.0 - scale - bias);
+        let coupling =
+            Coupling { f0, F_ms, E_s_v: E_s(dfg_v.scale, dfg_v.bias), E_s_avg: E_s(dfg_avg.scale, dfg_avg.bias) };
         let geometry = choices.geometry;
         Self {
             table,
@@ -192,7 +182,7 @@ impl<'a> Bsdf<'a> {
         let VoH = self.view.dot(h).clamp(0.0, 1.0);
         let single =
             self.distribution.D(h) * self.geometry.visibility(&self.distribution, self.view, light.with_z(NoL));
-        let dfg_l = self.table.dfg(self.material.perceptual_roughness, NoL);
+        let dfg_l = self.table.dfg(perceptual_roughness_toward(&self.distribution, light), NoL);
         let multiple = f_KullaConty(self.E_v, dfg_l.albedo(), self.E_avg);
         let dielectric =
             F_Schlick(self.dielectric.f0, self.dielectric.f90, VoH) * single + self.dielectric.F_ms * multiple;
@@ -204,6 +194,35 @@ impl<'a> Bsdf<'a> {
 
         (dielectric + diffuse).lerp(metal, self.material.metallic)
     }
+}
+
+/// The perceptual roughness whose isotropic facets have about the albedo that these have along a direction of the
+/// tangent frame. Each direction is read by itself, so that light and view can still be exchanged.
+///
+/// alpha^2 = m (1 - 0.2 d^2 - 0.4 d (x^2 - y^2)), with m the mean of both alpha^2 and d their contrast, was fitted to
+/// albedos by quadrature. It stays on the side of less energy where it cannot follow.
+fn perceptual_roughness_toward(distribution: &Distribution, direction: DVec3) -> f64 {
+    let (mean, contrast) = mean_and_contrast(distribution);
+    let lean = direction.x.powi(2) - direction.y.powi(2);
+    (mean * (1.0 - 0.2 * contrast * contrast - 0.4 * contrast * lean)).powf(0.25)
+}
+
+/// The average of the albedo over directions.
+fn average(table: &DirectionalAlbedo, distribution: &Distribution) -> Dfg {
+    let (mean, contrast) = mean_and_contrast(distribution);
+    table.average((mean * (1.0 - 0.2 * contrast * contrast)).powf(0.25))
+}
+
+/// How much of the lost energy is given back. The albedo of anisotropic facets is known within a few hundredths only, so
+/// what is given back fades with their contrast: no body may be brighter than the light that falls on it.
+fn compensated_share(distribution: &Distribution) -> f64 {
+    let (_, contrast) = mean_and_contrast(distribution);
+    1.0 - contrast * contrast
+}
+
+fn mean_and_contrast(distribution: &Distribution) -> (f64, f64) {
+    let (x2, y2) = (distribution.alphas().0.powi(2), distribution.alphas().1.powi(2));
+    (0.5 * (x2 + y2), (x2 - y2) / (x2 + y2))
 }
 
 fn metal_reflectance(material: &SurfaceMaterial, VoH: f64) -> DVec3 {

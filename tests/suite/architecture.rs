@@ -12,7 +12,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     // Plain data.
     ("math", &[]),
     ("progress", &[]),
-    ("scene", &["math"]),
+    ("radiometry", &["math"]),
+    ("scene", &["math", "radiometry"]),
     ("import", &["math", "progress", "scene"]),
     // The float64 truth, and what is made from it. The renderer reads the baked tables and never the truth.
     ("reference", &["math", "progress", "scene"]),

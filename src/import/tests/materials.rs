@@ -60,6 +60,7 @@ fn material_extensions() {
             "specularFactor": 0.5, "specularTexture": { "index": 0, "texCoord": 1 },
             "specularColorFactor": [2, 1, 0], "specularColorTexture": { "index": 0 }
         },
+        "KHR_materials_anisotropy": { "anisotropyStrength": 0.75, "anisotropyRotation": 1.5 },
         "KHR_materials_unlit": {}
     } }));
     let material = &asset.loaded().scene.materials[0];
@@ -68,6 +69,7 @@ fn material_extensions() {
     assert_eq!((material.specular, material.specular_color), (0.5, Vec3::new(2.0, 1.0, 0.0)));
     assert_eq!(material.texture(TextureSlot::Specular).unwrap().uv_set, 1);
     assert_eq!(material.texture(TextureSlot::SpecularColor).unwrap().uv_set, 0);
+    assert_eq!((material.anisotropy_strength, material.anisotropy_rotation_rad), (0.75, 1.5));
     assert!(material.unlit);
     assert_eq!(self::material(json!({ "extensions": { "KHR_materials_ior": { "ior": 0 } } })).ior, 0.0);
     assert_eq!(self::material(json!({ "extensions": { "KHR_materials_ior": {} } })).ior, 1.5);
@@ -85,7 +87,7 @@ fn texture_transforms_in_every_slot() {
         "normalTexture": transformed(2), "occlusionTexture": transformed(3), "emissiveTexture": transformed(4),
         "extensions": { "KHR_materials_specular": {
             "specularTexture": transformed(5), "specularColorTexture": transformed(6)
-        } }
+        }, "KHR_materials_anisotropy": { "anisotropyTexture": transformed(7) } }
     }));
     for (n, slot) in TextureSlot::ALL.into_iter().enumerate() {
         let texture = material.texture(slot).unwrap();

@@ -102,7 +102,6 @@ fn sample_models_with_extensions_load_or_say_what_they_need() {
     for (name, ignored) in [
         ("simple-instancing.glb", "EXT_mesh_gpu_instancing"),
         ("ClearCoatTest.glb", "KHR_materials_clearcoat"),
-        ("AnisotropyRotationTest.glb", "KHR_materials_anisotropy"),
         ("AttenuationTest.glb", "KHR_materials_volume"),
         ("dispersion-test.glb", "KHR_materials_dispersion"),
     ] {
