@@ -3,10 +3,10 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
-use crate::bake::dfg;
+use crate::bake::{dfg, disney};
 use crate::frame::{FramePlan, plan};
 use crate::gpu::formats;
-use crate::gpu_scene::{GpuScene, SharedTextures, UploadError};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
 use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
 use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
@@ -74,7 +74,7 @@ impl Renderer {
         });
         Self {
             sources,
-            shared: SharedTextures { dfg: upload_dfg(device, queue), clamp_sampler },
+            shared: SharedTextures { dfg: dfg_table().upload(device, queue), clamp_sampler },
             forward: ForwardPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
@@ -89,7 +89,7 @@ impl Renderer {
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        Ok(GpuScene::new(device, queue, scene, maps)?)
+        Ok(GpuScene::new(device, queue, scene, maps, &disney_table())?)
     }
 
     /// Makes the pipelines that this view needs, so that [`Self::encode_radiance`] compiles nothing.
@@ -180,30 +180,14 @@ fn check_size(device: &wgpu::Device, view: &View) -> Result<(), RenderError> {
     if fits { Ok(()) } else { Err(RenderError::Size { width, height, allowed }) }
 }
 
-fn upload_dfg(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
-    let format = formats::dfg_table(device.features());
-    let table = dfg::embedded();
-    let halves: Vec<half::f16>;
-    let bytes: &[u8] = if formats::is_half_float(format) {
-        halves = table.iter().map(|&value| half::f16::from_f32(f32::from(value) / 65535.0)).collect();
-        bytemuck::cast_slice(&halves)
-    } else {
-        bytemuck::cast_slice(&table)
-    };
+fn dfg_table() -> Table {
     let side = dfg::SIZE as u32;
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("dfg"),
-        size: wgpu::Extent3d { width: side, height: side, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    device
-        .create_texture_with_data(queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, bytes)
-        .create_view(&Default::default())
+    Table { label: "dfg", width: side, height: side, bytes: dfg::embedded_bytes() }
+}
+
+fn disney_table() -> Table {
+    let (width, height) = (disney::SIDE as u32, disney::HEIGHT as u32);
+    Table { label: "disney", width, height, bytes: disney::embedded_bytes() }
 }
 
 fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {

@@ -6,11 +6,10 @@
 #import "lobe/albedo.wgsl"
 #import <multiscatter>
 #import "lighting/dfg.wgsl"
+#import "lighting/lift_view.wgsl"
 
 // Below this a punctual light's highlight is a few pixels of f32 noise, and D overflows half floats.
 const ALPHA_MIN: f32 = 1e-3;
-// A direction of view behind the shading normal is lifted to this cosine: the lobes keep their albedo at silhouettes.
-const NOV_MIN: f32 = 1e-4;
 // Smallest loss that the 16-bit table can tell from zero.
 const LOSS_MIN: f32 = 1.5e-5;
 
@@ -40,7 +39,7 @@ struct Lobes {
 
 fn make_lobes(surface: Surface) -> Lobes {
     let r = surface.perceptual_roughness;
-    let v = normalize(surface.v + surface.n * max(NOV_MIN - dot(surface.n, surface.v), 0.0));
+    let v = lift_view(surface.n, surface.v);
     let NoV = clamp(dot(surface.n, v), NOV_MIN, 1.0);
     let table = dfg(r, NoV);
     let E = table.x + table.y;

@@ -1,11 +1,14 @@
 #import <normal>
 #import <facing>
+#import <tangent>
 
 // What a material says about one point: all that shading needs beside the lights.
 struct Surface {
     // Unit shading normal on the viewer's side, and unit vector toward the viewer.
     n: vec3f,
     v: vec3f,
+    // Unit tangent across n where shading depends on it, else zero.
+    t: vec3f,
     base_color: vec3f,
     alpha: f32,
     metallic: f32,
@@ -25,6 +28,7 @@ fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surfa
     var surface: Surface;
     surface.n = face_viewer(shading_normal(v, toward_viewer), front_facing);
     surface.v = toward_viewer;
+    surface.t = shading_tangent(v, surface.n);
     surface.base_color = base_color.xyz;
     surface.alpha = base_color.w;
     surface.metallic = saturate(material.metallic * metallic_roughness.z);

@@ -31,7 +31,8 @@ fn bake_row(row: usize) -> impl Iterator<Item = u16> {
     })
 }
 
-fn unorm16(value: f64) -> u16 {
+/// A number in [0, 1] as a fraction of 65535.
+pub(super) fn unorm16(value: f64) -> u16 {
     (value.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16
 }
 
@@ -45,7 +46,7 @@ pub fn embedded() -> Vec<u16> {
     decode(EMBEDDED)
 }
 
-fn decode(bytes: &[u8]) -> Vec<u16> {
+pub(super) fn decode(bytes: &[u8]) -> Vec<u16> {
     bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect()
 }
 

@@ -5,6 +5,7 @@ mod camera;
 mod environment;
 mod error;
 mod output;
+mod overrides;
 mod progress;
 mod render;
 mod stats;

@@ -34,8 +34,8 @@ impl Precision {
     }
 }
 
-/// The split-sum table: 16-bit normalised where the device has it, else half floats (error 1e-4 instead of 4e-5).
-pub fn dfg_table(features: wgpu::Features) -> TextureFormat {
+/// Tables baked from the reference: 16-bit normalised where the device has it, else half floats (error 1e-4 instead of 4e-5).
+pub fn baked_table(features: wgpu::Features) -> TextureFormat {
     if features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM) {
         TextureFormat::Rgba16Unorm
     } else {

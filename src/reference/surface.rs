@@ -3,7 +3,7 @@
 use super::bsdf::SurfaceMaterial;
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
-use crate::scene::{AlphaMode, Material, Scene, TextureSlot, View};
+use crate::scene::{AlphaMode, Disney, Material, Scene, TextureSlot, View};
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 
 /// A visible point, ready for light.
@@ -12,7 +12,11 @@ pub struct Surface {
     pub position_in_world: DVec3,
     /// Unit shading normal, normal map included; turned round on the back of a double-sided surface.
     pub normal_in_world: DVec3,
+    /// Interpolated tangent, of any length and not yet across the normal; zero where the primitive has none.
+    pub tangent_in_world: DVec3,
     pub material: SurfaceMaterial,
+    /// The rest of the material if it is a Disney one.
+    pub disney: Option<Disney>,
     /// cd/m2.
     pub emissive_nits: DVec3,
     /// Scale of the environment's light, in [0, 1].
@@ -85,6 +89,8 @@ impl<'a> World<'a> {
         Surface {
             position_in_world: point.interpolate_corners(),
             normal_in_world: point.shading_normal(),
+            tangent_in_world: point.tangent().unwrap_or(DVec3::ZERO),
+            disney: material.disney,
             material: SurfaceMaterial {
                 base_color: point.base_color().xyz().clamp(DVec3::ZERO, DVec3::ONE),
                 metallic: (f64::from(material.metallic) * metallic_roughness.z).clamp(0.0, 1.0),
@@ -173,14 +179,20 @@ impl Point<'_> {
         if is_area && !self.hit.front { -mapped } else { mapped }
     }
 
+    /// The tangent between the unit vectors at the vertices.
+    fn tangent(&self) -> Option<DVec3> {
+        let tangents = self.draw.primitive.tangents.as_ref()?;
+        Some(self.interpolate(|vertex| {
+            (self.draw.world_from_object * tangents[vertex].truncate().as_dvec3()).normalize_or_zero()
+        }))
+    }
+
     /// The normal map's normal in the frame of tangent, bitangent and `normal`, none of which is normalised
     /// (Mikkelsen 2008; glTF 2.0, 3.9.3). `None` without a normal map, or where the frame collapses.
     fn mapped_normal(&self, normal: DVec3) -> Option<DVec3> {
         self.material().texture(TextureSlot::Normal)?;
         let tangents = self.draw.primitive.tangents.as_ref()?;
-        let tangent = self.interpolate(|vertex| {
-            (self.draw.world_from_object * tangents[vertex].truncate().as_dvec3()).normalize_or_zero()
-        });
+        let tangent = self.tangent()?;
         // The sign is the same at all vertices of a triangle. A mirrored instance mirrors the bitangent, which a cross
         // product of mirrored vectors does not.
         let sign = f64::from(tangents[self.triangle().vertices[0] as usize].w) * self.draw.handedness;

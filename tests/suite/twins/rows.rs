@@ -8,9 +8,10 @@ use super::grid::{ALPHAS, COSINES, UNIT, colors, directions, display_light, micr
 use super::harness::{Scale, Twin};
 use glam::{DMat4, DVec3, DVec4};
 use specula::math::color::srgb_from_linear;
-use specula::math::spaces::octahedral_from_direction;
+use specula::math::spaces::{octahedral_from_direction, orthonormal_basis};
 use specula::reference::albedo::Dfg;
-use specula::reference::{brdf, color, lights};
+use specula::reference::disney::bsdf::TangentFrame;
+use specula::reference::{brdf, color, disney, lights};
 use specula::scene::ToneMap;
 
 const EPS: f64 = f32::EPSILON as f64;
@@ -73,6 +74,62 @@ pub(crate) const TWINS: &[Twin] = &[
         // F90 below F0 makes a difference of two reflectances.
         scale: Scale::Terms(|x| x[0].max(x[1]).max(x[2]).max(x[3])),
         limit: 4.0 * EPS,
+    },
+    Twin {
+        file: "math/orthonormal.wgsl",
+        function: "any_orthonormal",
+        grid: || directions(4000).iter().map(|d| d.to_array().to_vec()).collect(),
+        truth: |x| orthonormal_basis(vec3(x, 0)).0.to_array().into(),
+        // Components of a unit vector.
+        scale: Scale::One,
+        limit: 4.0 * EPS,
+    },
+    Twin {
+        file: "brdf/d_gtr1.wgsl",
+        function: "D_GTR1",
+        grid: || microfacets().into_iter().filter(|x| x[0] < 1.0).collect(),
+        truth: |x| vec![disney::D_GTR1(x[0], vec3(x, 1).normalize().dot(vec3(x, 4).normalize()))],
+        scale: Scale::Result,
+        // As D_GGX, with the square of the denominator left out.
+        limit: 2e-6,
+    },
+    Twin {
+        file: "brdf/d_gtr2_anisotropic.wgsl",
+        function: "D_GTR2_anisotropic",
+        grid: anisotropic_microfacets,
+        truth: |x| {
+            let (n, h) = (vec3(x, 8).normalize(), vec3(x, 11).normalize());
+            let frame = TangentFrame::new(n, vec3(x, 2));
+            vec![disney::D_GTR2_anisotropic(x[0], x[1], frame.tangent.dot(h), frame.bitangent.dot(h), n.dot(h))]
+        },
+        scale: Scale::Result,
+        limit: 4e-6,
+    },
+    Twin {
+        file: "brdf/g1_smith_ggx.wgsl",
+        function: "G1_SmithGGX",
+        grid: || product(&[&ALPHAS, &[&[0.0], COSINES.as_slice()].concat()]),
+        truth: |x| vec![if x[1] > 0.0 { disney::G1_SmithGGX(x[0], x[1]) } else { 0.0 }],
+        scale: Scale::Result,
+        limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "brdf/fd_burley.wgsl",
+        function: "Fd_Burley",
+        grid: || product(&[&UNIT, &COSINES, &[&[0.0], COSINES.as_slice()].concat(), &COSINES]),
+        truth: |x| vec![disney::Fd_Burley(x[0], x[1], x[2], x[3])],
+        // No factor is below 1/2.
+        scale: Scale::Result,
+        limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "brdf/fd_subsurface.wgsl",
+        function: "Fd_Subsurface",
+        grid: || product(&[&UNIT, &COSINES, &[&[0.0], COSINES.as_slice()].concat(), &COSINES]),
+        truth: |x| vec![disney::Fd_Subsurface(x[0], x[1], x[2], x[3])],
+        // F_ss vanishes where both cosines and the roughness do; its terms are of the size of 1 / (NoV + NoL).
+        scale: Scale::Terms(|x| 1.0 + 1.0 / (x[1] + x[2])),
+        limit: 8.0 * EPS,
     },
     Twin {
         file: "brdf/fd_lambert.wgsl",
@@ -194,6 +251,22 @@ fn display(curve: ToneMap, exposed: &[f64]) -> Vec<f64> {
 
 fn vec3(x: &[f64], first: usize) -> DVec3 {
     DVec3::from_slice(&x[first..])
+}
+
+/// Two alphas, an orthonormal frame and a half vector: angles of many sizes in units of the alphas.
+fn anisotropic_microfacets() -> Vec<Vec<f32>> {
+    let with_frame = |(i, point): (usize, Vec<f32>)| {
+        let n = glam::Vec3::from_slice(&point[1..]).as_dvec3().normalize();
+        let side = n.any_orthonormal_vector();
+        let turn = std::f64::consts::TAU * f64::from(spread(i, 3));
+        let t = side * turn.cos() + n.cross(side) * turn.sin();
+        let b = n.cross(t);
+        // From ten times as rough along the tangent to ten times as rough across it.
+        let ratio = 10.0_f32.powf(2.0 * spread(i, 4) - 1.0);
+        let alphas = [point[0] * ratio.sqrt(), point[0] / ratio.sqrt()].map(|alpha| alpha.max(1e-4));
+        [&alphas, t.as_vec3().as_ref() as &[f32], b.as_vec3().as_ref(), &point[1..]].concat()
+    };
+    microfacets().into_iter().enumerate().map(with_frame).collect()
 }
 
 /// Directions of many lengths, those included whose square underflows, and a fallback.
