@@ -3,10 +3,10 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
-use crate::bake::{dfg, fresnel_tail};
+use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail};
 use crate::frame::{FramePlan, plan};
 use crate::gpu::formats;
-use crate::gpu_scene::{GpuScene, SharedTextures, UploadError};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
 use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
 use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
@@ -75,8 +75,8 @@ impl Renderer {
         Self {
             sources,
             shared: SharedTextures {
-                dfg: upload_table(device, queue, "dfg", &dfg::embedded(), dfg::SIZE),
-                fresnel_tail: upload_table(device, queue, "Fresnel tail", &fresnel_tail::embedded(), dfg::SIZE),
+                dfg: table(&dfg::TABLE).upload(device, queue),
+                fresnel_tail: table(&fresnel_tail::TABLE).upload(device, queue),
                 clamp_sampler,
             },
             forward: ForwardPipelines::default(),
@@ -93,7 +93,7 @@ impl Renderer {
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        Ok(GpuScene::new(device, queue, scene, maps)?)
+        Ok(GpuScene::new(device, queue, scene, maps, &table(&disney::TABLE))?)
     }
 
     /// Makes the pipelines that this view needs, so that [`Self::encode_radiance`] compiles nothing.
@@ -184,35 +184,9 @@ fn check_size(device: &wgpu::Device, view: &View) -> Result<(), RenderError> {
     if fits { Ok(()) } else { Err(RenderError::Size { width, height, allowed }) }
 }
 
-/// A square table of unorm16.
-fn upload_table(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    label: &str,
-    table: &[u16],
-    side: usize,
-) -> wgpu::TextureView {
-    let format = formats::table(device.features(), table.len() / (side * side));
-    let halves: Vec<half::f16>;
-    let bytes: &[u8] = if formats::is_half_float(format) {
-        halves = table.iter().map(|&value| half::f16::from_f32(f32::from(value) / 65535.0)).collect();
-        bytemuck::cast_slice(&halves)
-    } else {
-        bytemuck::cast_slice(table)
-    };
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: side as u32, height: side as u32, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    device
-        .create_texture_with_data(queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, bytes)
-        .create_view(&Default::default())
+fn table(embedded: &EmbeddedTable) -> Table {
+    let EmbeddedTable { file: label, width, height, channels, bytes, .. } = *embedded;
+    Table { label, width: width as u32, height: height as u32, channels, bytes }
 }
 
 fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {

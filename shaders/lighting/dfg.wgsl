@@ -1,5 +1,6 @@
+#import "lighting/clamp_sampler.wgsl"
+
 @group(0) @binding(2) var dfg_table: texture_2d<f32>;
-@group(0) @binding(3) var clamp_sampler: sampler;
 
 const DFG_SIZE: f32 = 128.0;
 

@@ -1,4 +1,4 @@
-#import "lighting/lobes.wgsl"
+#import <lobes>
 #import <punctual>
 #import <environment>
 

@@ -5,11 +5,10 @@
 #import "lighting/dfg.wgsl"
 #import <fresnel>
 #import <shape>
+#import "lighting/lift_view.wgsl"
 
 // Below this a punctual light's highlight is a few pixels of f32 noise, and D overflows half floats.
 const ALPHA_MIN: f32 = 1e-3;
-// A direction of view behind the shading normal is lifted to this cosine: the lobes keep their albedo at silhouettes.
-const NOV_MIN: f32 = 1e-4;
 // Smallest loss that the 16-bit table can tell from zero.
 const LOSS_MIN: f32 = 1.5e-5;
 
@@ -37,7 +36,7 @@ struct Lobes {
 
 fn make_lobes(surface: Surface) -> Lobes {
     let r = surface.perceptual_roughness;
-    let v = normalize(surface.v + surface.n * max(NOV_MIN - dot(surface.n, surface.v), 0.0));
+    let v = lift_view(surface.n, surface.v);
     let NoV = clamp(dot(surface.n, v), NOV_MIN, 1.0);
     let shape = make_shape(surface, max(r * r, ALPHA_MIN));
     let table_r = albedo_perceptual_roughness(shape, r, v);

@@ -1,6 +1,7 @@
 #import <normal>
 #import <facing>
 #import <tangents>
+#import <tangent>
 
 // What a material says about one point: all that shading needs beside the lights.
 struct Surface {
@@ -8,6 +9,8 @@ struct Surface {
     n: vec3f,
     v: vec3f,
     tangents: Tangents,
+    // Unit tangent across n where shading depends on it, else zero.
+    t: vec3f,
     base_color: vec3f,
     alpha: f32,
     metallic: f32,
@@ -29,6 +32,7 @@ fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surfa
     surface.n = face_viewer(n, front_facing);
     surface.tangents = read_tangents(v, n);
     surface.v = toward_viewer;
+    surface.t = shading_tangent(v, surface.n);
     surface.base_color = saturate(base_color.xyz);
     surface.alpha = base_color.w;
     surface.metallic = saturate(material.metallic * metallic_roughness.z);

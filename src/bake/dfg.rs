@@ -4,7 +4,7 @@
 //! ascending sqrt(NoV), end points on texel centres: texel (i, j) holds NoV = (i / 127)^2 and perceptual roughness j / 127.
 //! A texel is four little-endian unorm16: scale, bias, and their cosine-weighted averages, which depend on j alone.
 
-use super::table::{EmbeddedTable, decode, unorm16};
+use super::table::{EmbeddedTable, unorm16};
 use crate::reference::albedo::DfgIntegrator;
 use rayon::prelude::*;
 
@@ -16,7 +16,8 @@ const CHANNELS: usize = 4;
 static EMBEDDED: &[u8; SIZE * SIZE * CHANNELS * 2] = include_bytes!("../../assets/dfg.bin");
 
 /// The table and its file.
-pub const TABLE: EmbeddedTable = EmbeddedTable { file: "dfg.bin", bake, embedded };
+pub const TABLE: EmbeddedTable =
+    EmbeddedTable { file: "dfg.bin", width: SIZE, height: SIZE, channels: CHANNELS, bytes: EMBEDDED, bake };
 
 /// Integrates the table: `SIZE * SIZE` texels of four unorm16, row-major.
 pub fn bake() -> Vec<u16> {
@@ -32,11 +33,6 @@ fn bake_row(row: usize) -> impl Iterator<Item = u16> {
         let dfg = integrator.dfg(perceptual_roughness, (column as f64 / last).powi(2));
         [dfg.scale, dfg.bias, average.scale, average.bias].map(unorm16)
     })
-}
-
-/// The table that is part of the library: `SIZE * SIZE` texels of four unorm16, row-major.
-pub fn embedded() -> Vec<u16> {
-    decode(EMBEDDED)
 }
 
 #[cfg(test)]
@@ -57,7 +53,7 @@ mod tests {
 
     #[test]
     fn bilinear_lookup_follows_the_quadrature() {
-        let (table, integrator) = (embedded(), DfgIntegrator::default());
+        let (table, integrator) = (TABLE.values(), DfgIntegrator::default());
         let (mut worst, mut square_sum, count): (f64, f64, u32) = (0.0, 0.0, 4000);
         for i in 0..count {
             // Additive recurrence of the plastic number (Roberts 2018): even cover of both arguments.

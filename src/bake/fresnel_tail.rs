@@ -4,7 +4,7 @@
 //! F = v.h (1 - v.h)^6, times [`SCALE`].
 
 use super::dfg::SIZE;
-use super::table::{EmbeddedTable, decode, unorm16};
+use super::table::{EmbeddedTable, unorm16};
 use crate::reference::albedo::DfgIntegrator;
 use rayon::prelude::*;
 
@@ -14,7 +14,8 @@ pub const SCALE: f64 = 16.0;
 static EMBEDDED: &[u8; SIZE * SIZE * 2] = include_bytes!("../../assets/fresnel_tail.bin");
 
 /// The table and its file.
-pub const TABLE: EmbeddedTable = EmbeddedTable { file: "fresnel_tail.bin", bake, embedded };
+pub const TABLE: EmbeddedTable =
+    EmbeddedTable { file: "fresnel_tail.bin", width: SIZE, height: SIZE, channels: 1, bytes: EMBEDDED, bake };
 
 /// Integrates the table: `SIZE * SIZE` unorm16, row-major.
 pub fn bake() -> Vec<u16> {
@@ -26,9 +27,4 @@ fn bake_row(row: usize) -> impl Iterator<Item = u16> {
     let last = (SIZE - 1) as f64;
     let tail = move |column: usize| integrator.fresnel_tail(row as f64 / last, (column as f64 / last).powi(2));
     (0..SIZE).map(move |column| unorm16(SCALE * tail(column)))
-}
-
-/// The table that is part of the library.
-pub fn embedded() -> Vec<u16> {
-    decode(EMBEDDED)
 }

@@ -7,22 +7,26 @@ pub(super) fn unorm16(value: f64) -> u16 {
     (value.clamp(0.0, 1.0) * f64::from(u16::MAX)).round() as u16
 }
 
-pub(super) fn decode(bytes: &[u8]) -> Vec<u16> {
-    bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect()
-}
-
-/// A table that is part of the library.
+/// A table that is part of the library: `width * height` texels of `channels` unorm16, row-major.
 #[derive(Debug, Clone, Copy)]
 pub struct EmbeddedTable {
     /// File name under `assets/`.
     pub file: &'static str,
+    pub width: usize,
+    pub height: usize,
+    pub channels: usize,
+    /// As the file has them: little-endian.
+    pub bytes: &'static [u8],
     /// Integrates it anew.
     pub bake: fn() -> Vec<u16>,
-    /// The values that the library has.
-    pub embedded: fn() -> Vec<u16>,
 }
 
 impl EmbeddedTable {
+    /// The values that the library has.
+    pub fn values(&self) -> Vec<u16> {
+        self.bytes.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect()
+    }
+
     /// Bakes the table into `folder`.
     ///
     /// # Errors
@@ -35,7 +39,7 @@ impl EmbeddedTable {
     /// Steps of 65535 by which a new bake differs at most from the embedded values. One is fine: the trigonometric
     /// functions of another platform may round the other way.
     pub fn worst_difference(&self) -> u16 {
-        let (baked, embedded) = ((self.bake)(), (self.embedded)());
+        let (baked, embedded) = ((self.bake)(), self.values());
         if baked.len() != embedded.len() {
             return u16::MAX;
         }

@@ -8,6 +8,7 @@ mod error;
 mod furnace;
 mod light;
 mod output;
+mod overrides;
 mod progress;
 mod render;
 mod stats;

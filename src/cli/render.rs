@@ -6,6 +6,7 @@ use super::environment::EnvironmentArgs;
 use super::error::CliError;
 use super::light::LightArgs;
 use super::output::{self, Format};
+use super::overrides;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
 use crate::bake::environment;
@@ -51,6 +52,10 @@ pub(super) struct RenderArgs {
     /// Which scene of the file, by number or name, instead of its default.
     #[arg(long, value_name = "N|NAME")]
     scene: Option<String>,
+    /// Set a number of materials: their name or index (* stands for any text), a parameter, and its value. A disney.*
+    /// parameter turns a material into a Disney one; colours are #rrggbb or r,g,b; a texture of the parameter goes.
+    #[arg(long = "override", value_name = "NAME.PARAMETER=VALUE")]
+    overrides: Vec<String>,
     /// Write what was drawn and how long it took.
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
@@ -212,6 +217,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
 
     let Imported { mut scene, warnings, .. } = watch.time("decode", || load(args, &progress))?;
     let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    overrides::apply(&mut scene, &args.overrides)?;
     scene.environment = watch.time("environment decode", || args.environment.load())?;
     for light in lights {
         warnings.extend(light.note);

@@ -77,7 +77,7 @@ fn drawable(
     instances: Range<u32>,
 ) -> Drawable {
     let material = &scene.materials[primitive.material];
-    let material_features = MaterialFeatures::of(material, primitive, scene, features.is_lit());
+    let material_features = MaterialFeatures::of(material, primitive, scene, features);
     Drawable {
         mesh,
         primitive: index,

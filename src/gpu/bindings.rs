@@ -1,7 +1,8 @@
 //! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
 
 use crate::shader::{
-    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SceneFeatures, material_texture_binding,
+    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SceneFeatures, Shading, disney_binding,
+    material_texture_binding,
 };
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
 
@@ -39,13 +40,20 @@ pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
     entries
 }
 
-/// Group 1 of the forward pass: the uniform, the samplers and the textures that are read.
+/// Group 1 of the forward pass: the uniform, the samplers and the textures that are read, and what a Disney material
+/// has beside.
 pub fn material_entries(features: &MaterialFeatures) -> Vec<BindGroupLayoutEntry> {
     let samplers = features.sampler_count();
     let mut entries = vec![buffer(MATERIAL_UNIFORM_BINDING, ShaderStages::FRAGMENT, BufferBindingType::Uniform)];
     entries.extend((0..samplers).map(|index| sampler(MATERIAL_SAMPLER_BINDING + index)));
     let textures = features.textures().enumerate();
     entries.extend(textures.map(|(index, _)| texture(material_texture_binding(samplers, index), true)));
+    if features.shading == Shading::Disney {
+        entries.push(buffer(disney_binding(features), ShaderStages::FRAGMENT, BufferBindingType::Uniform));
+    }
+    if features.disney_table {
+        entries.push(texture(disney_binding(features) + 1, true));
+    }
     entries
 }
 

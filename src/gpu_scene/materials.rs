@@ -2,13 +2,14 @@
 
 use super::entry;
 use super::mips::Role;
+use super::tables::Table;
 use super::textures::TextureCache;
 use crate::frame::Drawables;
 use crate::gpu::bindings::material_layout;
-use crate::scene::{AlphaMode, Material, MetalFresnel, Scene, TextureSlot};
+use crate::scene::{AlphaMode, Disney, Material, MetalFresnel, Scene, TextureSlot};
 use crate::shader::{
-    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, material_samplers, material_texture_binding,
-    types,
+    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, Shading, disney_binding, material_samplers,
+    material_texture_binding, types,
 };
 use glam::Vec3;
 use std::collections::HashMap;
@@ -27,16 +28,19 @@ pub(crate) fn upload(
     queue: &wgpu::Queue,
     scene: &Scene,
     drawables: &Drawables,
+    disney_table: &Table,
 ) -> (Materials, u64, Vec<String>) {
     let mut cache = TextureCache::default();
     let mut materials = Materials::default();
+    let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
+    let disney_table = reads_table.then(|| disney_table.upload(device, queue));
     for drawable in &drawables.draws {
         let key = (drawable.material, drawable.material_features);
         if materials.groups.contains_key(&key) {
             continue;
         }
         let layout = materials.layouts.entry(key.1).or_insert_with(|| material_layout(device, &key.1));
-        let group = bind(device, queue, scene, &mut cache, layout, key);
+        let group = bind(device, queue, scene, (&mut cache, disney_table.as_ref()), layout, key);
         materials.groups.insert(key, group);
     }
     (materials, cache.bytes, cache.warnings)
@@ -46,16 +50,13 @@ fn bind(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     scene: &Scene,
-    cache: &mut TextureCache,
+    (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
     (index, features): (usize, MaterialFeatures),
 ) -> wgpu::BindGroup {
     let material = &scene.materials[index];
-    let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: material.name.as_deref(),
-        contents: bytemuck::bytes_of(&uniform(material)),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
+    let name = material.name.as_deref().unwrap_or("material");
+    let uniform = uniform_buffer(device, name, bytemuck::bytes_of(&uniform(material)));
     let sampler_count = features.sampler_count();
     let samplers: Vec<wgpu::Sampler> = material_samplers(&features, material, scene)
         .into_iter()
@@ -78,8 +79,34 @@ fn bind(
         let binding = material_texture_binding(sampler_count, index);
         entries.push(entry(binding, wgpu::BindingResource::TextureView(view)));
     }
+    let disney = material.disney.filter(|_| features.shading == Shading::Disney);
+    let disney = disney.map(|disney| uniform_buffer(device, "disney", bytemuck::bytes_of(&disney_uniform(&disney))));
+    if let Some(disney) = &disney {
+        entries.push(entry(disney_binding(&features), disney.as_entire_binding()));
+    }
+    if let (true, Some(table)) = (features.disney_table, disney_table) {
+        entries.push(entry(disney_binding(&features) + 1, wgpu::BindingResource::TextureView(table)));
+    }
     let label = material.name.as_deref();
     device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
+}
+
+fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::UNIFORM;
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
+fn disney_uniform(disney: &Disney) -> types::DisneyUniform {
+    types::DisneyUniform {
+        subsurface: disney.subsurface,
+        specular: disney.specular,
+        specular_tint: disney.specular_tint,
+        anisotropic: disney.anisotropic,
+        sheen: disney.sheen,
+        sheen_tint: disney.sheen_tint,
+        clearcoat: disney.clearcoat,
+        clearcoat_gloss: disney.clearcoat_gloss,
+    }
 }
 
 fn role(slot: TextureSlot, material: &Material) -> Role {

@@ -4,6 +4,7 @@ mod environment;
 mod geometry;
 mod materials;
 pub mod mips;
+mod tables;
 mod textures;
 
 use crate::frame::{Drawables, PlacedInstance};
@@ -17,6 +18,7 @@ use std::collections::HashMap;
 use wgpu::util::DeviceExt;
 
 pub use environment::Panorama;
+pub use tables::Table;
 
 /// Why a scene cannot be put on this device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -67,19 +69,21 @@ pub struct SharedTextures {
 }
 
 impl GpuScene {
-    /// Uploads `scene`. `maps` are baked from its environment and needed when it has one.
+    /// Uploads `scene`. `maps` are baked from its environment and needed when it has one; `disney_table` goes to the GPU
+    /// when something reads it.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
+        disney_table: &Table,
     ) -> Result<Self, UploadError> {
         let features = SceneFeatures::of(scene);
         let drawables = Drawables::new(scene, features);
         let bounds = scene.bounds();
         let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
         let geometry = upload_primitives(device, scene, &drawables)?;
-        let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables);
+        let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables, disney_table);
         let environment = match (features.environment, &scene.environment, maps) {
             (true, Some(environment), Some(maps)) => Some(GpuEnvironment::new(device, queue, environment, maps)?),
             (true, ..) => return Err(UploadError::MissingMaps),

@@ -7,6 +7,7 @@ pub mod albedo;
 pub mod brdf;
 pub mod bsdf;
 pub mod color;
+pub mod disney;
 pub mod environment;
 pub mod geometry;
 pub mod integrator;

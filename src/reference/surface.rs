@@ -3,7 +3,7 @@
 use super::bsdf::{Anisotropy, SurfaceMaterial, dielectric_reflectance};
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
-use crate::scene::{AlphaMode, Material, Scene, TextureSlot, View};
+use crate::scene::{AlphaMode, Disney, Material, Scene, TextureSlot, View};
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 
 /// A visible point, ready for light.
@@ -12,7 +12,11 @@ pub struct Surface {
     pub position_in_world: DVec3,
     /// Unit shading normal, normal map included; turned round on the back of a double-sided surface.
     pub normal_in_world: DVec3,
+    /// Interpolated tangent, of any length and not yet across the normal; zero where the primitive has none.
+    pub tangent_in_world: DVec3,
     pub material: SurfaceMaterial,
+    /// The rest of the material if it is a Disney one.
+    pub disney: Option<Disney>,
     /// cd/m2.
     pub emissive_nits: DVec3,
     /// Scale of the environment's light, in [0, 1].
@@ -85,6 +89,8 @@ impl<'a> World<'a> {
         Surface {
             position_in_world: point.interpolate_corners(),
             normal_in_world: point.shading_normal(),
+            tangent_in_world: point.tangent().map_or(DVec3::ZERO, |(tangent, _)| tangent),
+            disney: material.disney,
             material: SurfaceMaterial {
                 base_color: point.base_color().xyz().clamp(DVec3::ZERO, DVec3::ONE),
                 metallic: (f64::from(material.metallic) * metallic_roughness.z).clamp(0.0, 1.0),

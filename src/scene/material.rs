@@ -1,5 +1,6 @@
 //! Surface appearance: metallic-roughness parameters and the textures that modulate them.
 
+use super::Disney;
 use glam::{Mat3, Vec2, Vec3, Vec4};
 
 /// How the alpha of the base colour is used.
@@ -155,6 +156,8 @@ pub struct Material {
     pub double_sided: bool,
     /// The base colour is the radiance; no light is evaluated.
     pub unlit: bool,
+    /// The Disney BRDF in place of the standard lobes. `ior`, `specular` and `specular_color` have no effect then.
+    pub disney: Option<Disney>,
     /// Textures by slot; read them through [`Material::texture`].
     pub texture_slots: [Option<TextureRef>; TextureSlot::ALL.len()],
 }
@@ -199,6 +202,7 @@ impl Default for Material {
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
+            disney: None,
             texture_slots: [None; TextureSlot::ALL.len()],
         }
     }

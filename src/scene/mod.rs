@@ -4,6 +4,7 @@
 //! World space is right-handed, +Y up, in metres. Every index held here is valid: importers check, readers index.
 
 mod camera;
+mod disney;
 mod environment;
 pub mod framing;
 mod image;
@@ -15,6 +16,7 @@ mod spot_cone;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use disney::Disney;
 pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, SpecularTile};
 pub use image::{Image, Pixels, RadianceImage, Sampler, Texture, Wrap};
 pub use light::{Light, LightInWorld, LightKind};

@@ -53,7 +53,10 @@ impl SceneFeatures {
 /// How the surface answers light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Shading {
+    /// The standard lobes of docs/model.md.
     Lit,
+    /// The lobes of docs/disney.md.
+    Disney,
     /// The scene has no light: only emission shows.
     EmissiveOnly,
     Unlit,
@@ -70,11 +73,18 @@ pub enum FresnelFeature {
 impl FresnelFeature {
     fn of(material: &Material) -> Self {
         match material.metal_fresnel {
-            _ if material.metallic == 0.0 || material.unlit => Self::Schlick,
+            _ if material.metallic == 0.0 || material.unlit || material.disney.is_some() => Self::Schlick,
             MetalFresnel::Schlick => Self::Schlick,
             MetalFresnel::Lazanyi { .. } => Self::Lazanyi,
             MetalFresnel::Conductor { .. } => Self::Conductor,
         }
+    }
+}
+
+impl Shading {
+    /// Whether light is evaluated.
+    pub fn is_lit(self) -> bool {
+        matches!(self, Self::Lit | Self::Disney)
     }
 }
 
@@ -84,21 +94,27 @@ pub struct MaterialFeatures {
     pub shading: Shading,
     pub alpha: Alpha,
     pub double_sided: bool,
-    /// Microfacets are spread along the tangent.
+    /// Microfacets are spread along the tangent (KHR_materials_anisotropy).
     pub anisotropic: bool,
     pub fresnel: FresnelFeature,
+    /// The Disney highlight has a direction along the surface, and the primitive has tangents to tell it.
+    pub disney_anisotropic: bool,
+    /// The table of the Disney lobes' albedos is read.
+    pub disney_table: bool,
     textures: [Option<TextureUse>; TextureSlot::ALL.len()],
 }
 
 impl MaterialFeatures {
     /// Only what can change a pixel: an unlit material reads no normal map, an opaque one in the dark no base colour.
-    pub fn of(material: &Material, primitive: &Primitive, scene: &Scene, lit_scene: bool) -> Self {
+    pub fn of(material: &Material, primitive: &Primitive, scene: &Scene, light: SceneFeatures) -> Self {
         let shading = if material.unlit || primitive.normals.is_none() {
             Shading::Unlit
-        } else if lit_scene {
-            Shading::Lit
-        } else {
+        } else if !light.is_lit() {
             Shading::EmissiveOnly
+        } else if material.disney.is_some() {
+            Shading::Disney
+        } else {
+            Shading::Lit
         };
         let alpha = match material.alpha_mode {
             AlphaMode::Opaque => Alpha::Opaque,
@@ -107,12 +123,15 @@ impl MaterialFeatures {
         };
         let mut samplers: Vec<Sampler> = Vec::new();
         let lit = shading == Shading::Lit;
+        let disney = material.disney.filter(|_| shading == Shading::Disney);
         let mut features = Self {
             shading,
             alpha,
             double_sided: material.double_sided,
             anisotropic: lit && material.anisotropy_strength > 0.0 && primitive.tangents.is_some(),
             fresnel: if lit { FresnelFeature::of(material) } else { FresnelFeature::Schlick },
+            disney_anisotropic: disney.is_some_and(|d| d.anisotropic > 0.0) && primitive.tangents.is_some(),
+            disney_table: disney.is_some() && light.environment,
             textures: [None; _],
         };
         for (slot, texture) in material.textures() {
@@ -134,7 +153,9 @@ impl MaterialFeatures {
     }
 
     fn reads(&self, slot: TextureSlot, material: &Material, primitive: &Primitive) -> bool {
-        let lit = self.shading == Shading::Lit;
+        let lit = self.shading.is_lit();
+        // Disney's parameters for the dielectric reflection have no textures.
+        let reads_specular = self.shading == Shading::Lit && material.specular > 0.0 && material.metallic < 1.0;
         match slot {
             TextureSlot::BaseColor => self.shading != Shading::EmissiveOnly || self.alpha != Alpha::Opaque,
             TextureSlot::Emissive => self.shading != Shading::Unlit && material.emissive_nits != glam::Vec3::ZERO,
@@ -142,8 +163,7 @@ impl MaterialFeatures {
             TextureSlot::Anisotropy => self.anisotropic,
             TextureSlot::Occlusion => lit && material.occlusion_strength > 0.0,
             TextureSlot::MetallicRoughness => lit,
-            TextureSlot::Specular => lit && material.specular > 0.0 && material.metallic < 1.0,
-            TextureSlot::SpecularColor => lit && material.specular > 0.0 && material.metallic < 1.0,
+            TextureSlot::Specular | TextureSlot::SpecularColor => reads_specular,
         }
     }
 
@@ -186,11 +206,13 @@ pub struct VertexFeatures {
 
 impl VertexFeatures {
     pub fn of(material: &MaterialFeatures, primitive: &Primitive) -> Self {
-        let lit = material.shading == Shading::Lit;
+        let lit = material.shading.is_lit();
         let reads_color = material.shading != Shading::EmissiveOnly || material.alpha != Alpha::Opaque;
         Self {
             normal: lit,
-            tangent: material.anisotropic || material.texture(TextureSlot::Normal).is_some(),
+            tangent: material.anisotropic
+                || material.disney_anisotropic
+                || material.texture(TextureSlot::Normal).is_some(),
             color: reads_color && primitive.colors.is_some(),
             uv_sets: material.textures().fold(0, |sets, (_, texture)| sets | 1 << texture.uv_set),
         }
@@ -226,10 +248,11 @@ impl fmt::Display for ForwardFeatures {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut parts = vec![match self.material.shading {
             Shading::Lit => "lit",
+            Shading::Disney => "disney",
             Shading::EmissiveOnly => "dark",
             Shading::Unlit => "unlit",
         }];
-        let lit = self.material.shading == Shading::Lit;
+        let lit = self.material.shading.is_lit();
         let flags = [
             (lit && self.scene.punctual, "punctual"),
             (lit && self.scene.environment, "environment"),

@@ -1,6 +1,6 @@
 //! WGSL that is written from features: vertex attributes, interpolants, and the texture reads of a material.
 
-use super::features::{MaterialFeatures, VertexFeatures};
+use super::features::{MaterialFeatures, Shading, VertexFeatures};
 use crate::scene::TextureSlot;
 use std::fmt::Write;
 
@@ -12,6 +12,11 @@ pub const MATERIAL_SAMPLER_BINDING: u32 = 1;
 /// Binding of the texture that is the `index`th in use, when `sampler_count` samplers are bound.
 pub fn material_texture_binding(sampler_count: u32, index: usize) -> u32 {
     MATERIAL_SAMPLER_BINDING + sampler_count + index as u32
+}
+
+/// Binding of the Disney parameters; the table of the lobes' albedos is the next one. Both follow the last texture.
+pub fn disney_binding(features: &MaterialFeatures) -> u32 {
+    material_texture_binding(features.sampler_count(), features.textures().count())
 }
 
 /// One vertex attribute: its name and WGSL type. Its position in the list is its shader location.
@@ -87,6 +92,13 @@ pub(super) fn material_interface(material: &MaterialFeatures) -> String {
     for (index, (slot, _)) in material.textures().enumerate() {
         let binding = material_texture_binding(samplers, index);
         let _ = writeln!(text, "@group(1) @binding({binding}) var {}_texture: texture_2d<f32>;", slot.name());
+    }
+    if material.shading == Shading::Disney {
+        let binding = disney_binding(material);
+        let _ = writeln!(text, "@group(1) @binding({binding}) var<uniform> disney: DisneyUniform;");
+        if material.disney_table {
+            let _ = writeln!(text, "@group(1) @binding({}) var disney_table: texture_2d<f32>;", binding + 1);
+        }
     }
     for slot in TextureSlot::ALL {
         let name = slot.name();

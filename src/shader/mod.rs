@@ -18,7 +18,7 @@ pub use features::{
     material_samplers,
 };
 pub use interface::{
-    Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, material_texture_binding,
+    Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, disney_binding, material_texture_binding,
 };
 pub use modules::{DisplayFeatures, background_module, display_module, forward_module};
 pub use sources::{SOURCES, ShaderSources};

@@ -17,16 +17,24 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
         ("material", Slot::Text(interface::material_interface(material))),
         (
             "normal",
-            match (material.shading, normal_mapped) {
-                (Shading::Lit, true) => Slot::File("surface/normal_map.wgsl"),
-                (Shading::Lit, false) => Slot::File("surface/normal_vertex.wgsl"),
-                _ => Slot::File("surface/normal_none.wgsl"),
+            match (material.shading.is_lit(), normal_mapped) {
+                (true, true) => Slot::File("surface/normal_map.wgsl"),
+                (true, false) => Slot::File("surface/normal_vertex.wgsl"),
+                (false, _) => Slot::File("surface/normal_none.wgsl"),
+            },
+        ),
+        (
+            "tangent",
+            match (material.shading, material.disney_anisotropic) {
+                (_, true) => Slot::File("surface/tangent_vertex.wgsl"),
+                (Shading::Disney, false) => Slot::File("surface/tangent_any.wgsl"),
+                _ => Slot::File("surface/tangent_none.wgsl"),
             },
         ),
         (
             "facing",
             choose(
-                material.double_sided && material.shading == Shading::Lit,
+                material.double_sided && material.shading.is_lit(),
                 "surface/facing_double.wgsl",
                 "surface/facing_single.wgsl",
             ),
@@ -34,7 +42,7 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
         (
             "shading",
             Slot::File(match material.shading {
-                Shading::Lit => "lighting/lit.wgsl",
+                Shading::Lit | Shading::Disney => "lighting/lit.wgsl",
                 Shading::EmissiveOnly => "lighting/emissive_only.wgsl",
                 Shading::Unlit => "lighting/unlit.wgsl",
             }),
@@ -51,8 +59,16 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
                 FresnelFeature::Conductor => "lighting/fresnel_conductor.wgsl",
             }),
         ),
+        ("lobes", choose(material.shading == Shading::Disney, "lighting/disney.wgsl", "lighting/lobes.wgsl")),
         ("punctual", choose(scene.punctual, "lighting/punctual.wgsl", "lighting/punctual_none.wgsl")),
-        ("environment", choose(scene.environment, "lighting/environment.wgsl", "lighting/environment_none.wgsl")),
+        (
+            "environment",
+            match (scene.environment, material.shading) {
+                (true, Shading::Disney) => Slot::File("lighting/environment_disney.wgsl"),
+                (true, _) => Slot::File("lighting/environment.wgsl"),
+                (false, _) => Slot::File("lighting/environment_none.wgsl"),
+            },
+        ),
         (
             "multiscatter",
             choose(*energy_compensation, "lobe/multiscatter_kulla_conty.wgsl", "lobe/multiscatter_none.wgsl"),

@@ -103,6 +103,20 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// The parameters of a Disney material that others do not have, each in [0, 1].
+    pub struct DisneyUniform {
+        subsurface: f32,
+        specular: f32,
+        specular_tint: f32,
+        anisotropic: f32,
+        sheen: f32,
+        sheen_tint: f32,
+        clearcoat: f32,
+        clearcoat_gloss: f32,
+    }
+}
+
+gpu_struct! {
     /// The panorama behind the scene.
     pub struct BackgroundUniform {
         /// Direction in the panorama's frame from (ndc.x, ndc.y, 1); not normalised.
@@ -136,6 +150,7 @@ pub const ALL: &[Declaration] = &[
     ("Light", Light::WGSL, Light::FIELDS, size_of::<Light>()),
     ("EnvironmentUniform", EnvironmentUniform::WGSL, EnvironmentUniform::FIELDS, size_of::<EnvironmentUniform>()),
     ("MaterialUniform", MaterialUniform::WGSL, MaterialUniform::FIELDS, size_of::<MaterialUniform>()),
+    ("DisneyUniform", DisneyUniform::WGSL, DisneyUniform::FIELDS, size_of::<DisneyUniform>()),
     ("BackgroundUniform", BackgroundUniform::WGSL, BackgroundUniform::FIELDS, size_of::<BackgroundUniform>()),
     ("DisplayUniform", DisplayUniform::WGSL, DisplayUniform::FIELDS, size_of::<DisplayUniform>()),
 ];

@@ -100,6 +100,7 @@ fn mistakes_get_one_line_and_leave_nothing() {
     assert_fails(&render(SHOWCASE, &["--orbit", "1,2,-3"]), 2, "RADIUS");
     assert_fails(&render(SHOWCASE, &["--fov", "180"]), 2, "--fov");
     assert_fails(&render(SHOWCASE, &["--msaa", "3"]), 2, "samples");
+    assert_fails(&render(SHOWCASE, &["--override", "nobody.metallic=1"]), 2, "nobody");
     assert_fails(&render(SHOWCASE, &["--adapter", "no such adapter", "--require-gpu"]), 3, "no such adapter");
     assert_fails(&["render", SHOWCASE, "-o", "a.bmp"], 2, "a.bmp");
     assert_fails(&["render", SHOWCASE, "-o", "-", "--json"], 2, "stdout");

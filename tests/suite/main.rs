@@ -3,6 +3,7 @@
 
 mod architecture;
 mod cli;
+mod disney;
 mod frames;
 mod goldens;
 mod lights;

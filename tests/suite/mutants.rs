@@ -1,6 +1,6 @@
 //! Planted faults: a test of the tests. Each is a plausible slip of the pen, and some comparison has to reject it.
 
-use crate::lit_plane::{Plane, planes};
+use crate::lit_plane::{Plane, disney_planes, planes};
 use crate::support::gpu;
 use crate::twins::harness::Twin;
 use crate::twins::{files, rows::TWINS};
@@ -35,6 +35,24 @@ const IN_FUNCTIONS: &[Mutant] = &[
     fault("brdf/f_schlick.wgsl", "saturate(1.0 - VoH)", "1.0 - VoH"),
     fault("brdf/f_schlick.wgsl", "(F90 - F0) * F_Schlick_weight", "(1.0 - F0) * F_Schlick_weight"),
     fault("brdf/fd_lambert.wgsl", "return INV_PI", "return 1.0"),
+    fault("brdf/d_gtr1.wgsl", "0.5 * INV_PI", "INV_PI"),
+    fault("brdf/d_gtr1.wgsl", "sin2 + a2", "sin2 + alpha"),
+    fault("brdf/d_gtr1.wgsl", "a2 - 1.0", "1.0"),
+    fault("brdf/d_gtr1.wgsl", "let sin2 = chord2 * (1.0 - 0.25 * chord2)", "let sin2 = 1.0 - dot(n, h) * dot(n, h)"),
+    fault("brdf/d_gtr2_anisotropic.wgsl", "dot(t, chord) / alpha_x", "dot(t, chord) / alpha_y"),
+    fault("brdf/d_gtr2_anisotropic.wgsl", "dot(b, chord)", "dot(t, chord)"),
+    fault("brdf/d_gtr2_anisotropic.wgsl", "ellipsoid * ellipsoid", "ellipsoid"),
+    fault("brdf/d_gtr2_anisotropic.wgsl", "let chord = h - n", "let chord = h"),
+    fault("brdf/g1_smith_ggx.wgsl", "2.0 * NoX /", "NoX /"),
+    fault("brdf/g1_smith_ggx.wgsl", "a2 = alpha * alpha", "a2 = alpha"),
+    fault("brdf/fd_burley.wgsl", "- 0.5", "+ 0.5"),
+    fault("brdf/fd_burley.wgsl", "2.0 * LoH * LoH", "2.0 * LoH"),
+    fault("brdf/fd_burley.wgsl", "F_Schlick_weight(NoL)", "F_Schlick_weight(NoV)"),
+    fault("brdf/fd_subsurface.wgsl", "1.25 *", "1.2 *"),
+    fault("brdf/fd_subsurface.wgsl", "- 1.0;", "- 0.5;"),
+    fault("brdf/fd_subsurface.wgsl", "- 0.5) + 0.5", "+ 0.5) - 0.5"),
+    fault("math/orthonormal.wgsl", "-sign * n.x)", "sign * n.x)"),
+    fault("math/orthonormal.wgsl", "n.z >= 0.0", "n.z <= 0.0"),
     fault("math/constants.wgsl", "0.318309886183791", "0.31831"),
     fault("math/vectors.wgsl", "inverseSqrt(", "sqrt("),
     fault("math/vectors.wgsl", "length_squared > 1e-30", "length_squared > 1e-20"),
@@ -150,8 +168,8 @@ const IN_FRAMES: &[Mutant] = &[
     fault("lighting/shape_isotropic.wgsl", "reflect(-v, n)", "n"),
     fault("lighting/environment.wgsl", "to_environment * mirror", "mirror"),
     fault("lighting/environment.wgsl", "to_environment * lobes.n", "lobes.n"),
-    fault("lighting/environment.wgsl", "level - f32(lower)", "0.0"),
-    fault("lighting/environment.wgsl", " * environment.radiance_scale", ""),
+    fault("lighting/prefiltered.wgsl", "level - f32(lower)", "0.0"),
+    fault("lighting/prefiltered.wgsl", " * environment.radiance_scale", ""),
     fault("lighting/lit.wgsl", " * surface.occlusion", ""),
     fault("lighting/lit.wgsl", " + surface.emissive", ""),
     fault("surface/surface.wgsl", "metallic_roughness.z", "metallic_roughness.x"),
@@ -170,7 +188,7 @@ const IN_FRAMES: &[Mutant] = &[
 ];
 
 /// Files that need a frame to be tested and have faults in [`IN_FRAMES`].
-const SEEN_IN_FRAMES: [&str; 16] = [
+const SEEN_IN_FRAMES: [&str; 17] = [
     "lighting/dfg.wgsl",
     "lighting/environment.wgsl",
     "lighting/lit.wgsl",
@@ -179,6 +197,7 @@ const SEEN_IN_FRAMES: [&str; 16] = [
     "lighting/fresnel_schlick.wgsl",
     "lighting/fresnel_tail.wgsl",
     "lighting/lobes.wgsl",
+    "lighting/prefiltered.wgsl",
     "lighting/punctual.wgsl",
     "lighting/shape_anisotropic.wgsl",
     "lighting/shape_isotropic.wgsl",
@@ -187,6 +206,53 @@ const SEEN_IN_FRAMES: [&str; 16] = [
     "surface/normal_map.wgsl",
     "surface/surface.wgsl",
     "surface/tangents_anisotropic.wgsl",
+];
+
+/// Faults in the lighting of Disney materials.
+const IN_DISNEY_FRAMES: &[Mutant] = &[
+    fault("lighting/disney.wgsl", "vec3f(0.3, 0.6, 0.1)", "vec3f(0.2126, 0.7152, 0.0722)"),
+    fault("lighting/disney.wgsl", "0.08 * disney.specular", "0.04 * disney.specular"),
+    fault("lighting/disney.wgsl", "mix(vec3f(1.0), hue, disney.specular_tint)", "hue"),
+    fault("lighting/disney.wgsl", "0.9 * disney.anisotropic", "disney.anisotropic"),
+    fault("lighting/disney.wgsl", "max(r * r / aspect,", "max(r * r * aspect,"),
+    fault("lighting/disney.wgsl", "(0.5 + 0.5 * r) * (0.5 + 0.5 * r)", "(0.5 + 0.5 * r)"),
+    fault("lighting/disney.wgsl", "mix(dielectric_F0, surface.base_color, surface.metallic)", "dielectric_F0"),
+    fault("lighting/disney.wgsl", "surface.base_color * (1.0 - surface.metallic)", "surface.base_color"),
+    fault("lighting/disney.wgsl", "hue, disney.sheen_tint)", "hue, disney.specular_tint)"),
+    fault("lighting/disney.wgsl", "disney.sheen * (1.0 - surface.metallic)", "disney.sheen"),
+    fault("lighting/disney.wgsl", "CLEARCOAT_WEIGHT * disney.clearcoat", "disney.clearcoat"),
+    fault("lighting/disney.wgsl", "DISNEY_ALPHA_MIN, disney.clearcoat_gloss", "DISNEY_ALPHA_MIN, 1.0"),
+    fault("lighting/disney.wgsl", "F0: f32 = 0.04", "F0: f32 = 0.05"),
+    fault("lighting/disney.wgsl", "(lobes.masking, lobes.NoV) / (4.0", "(lobes.masking, lobes.NoV) / (2.0"),
+    fault("lighting/disney.wgsl", "(CLEARCOAT_MASKING, lobes.NoV) / (4.0", "(lobes.masking, lobes.NoV) / (4.0"),
+    fault("lighting/disney.wgsl", "G1_SmithGGX(lobes.masking, NoL)", "NoL"),
+    fault("lighting/disney.wgsl", "mix(Fd, Fss, lobes.subsurface)", "Fd"),
+    fault("lighting/disney.wgsl", "lobes.sheen * F_Schlick_weight(LoH)", "lobes.sheen"),
+    fault("lighting/disney.wgsl", "smooth_part * NoL +", "smooth_part +"),
+    fault("lighting/disney.wgsl", "cross(surface.n, surface.t)", "surface.t"),
+    fault("lighting/disney_albedo.wgsl", "vec2f(sqrt(cos_theta)", "vec2f(cos_theta"),
+    fault("lighting/disney_albedo.wgsl", "vec3f(c, T2, T3) * 3.0", "vec3f(c, T2, T3) * 2.0"),
+    fault("lighting/disney_albedo.wgsl", "disney_layered(2.0,", "disney_layered(0.0,"),
+    fault("lighting/disney_albedo.wgsl", "texel.xy * 2.0", "texel.xy"),
+    fault("lighting/disney_albedo.wgsl", "return root * root", "return root"),
+    fault("lighting/disney_albedo.wgsl", "DISNEY_TILES - 1.0, clearcoat_gloss", "DISNEY_TILES - 1.0, 1.0"),
+    fault("lighting/environment_disney.wgsl", "lobes.n + lobes.t * (", "lobes.n + lobes.b * ("),
+    fault("lighting/environment_disney.wgsl", "(sqrt(excess / (1.0 - c * c)) * c)", "(sqrt(excess) * c)"),
+    fault("lighting/environment_disney.wgsl", "saturate(dot(lobes.v, h)) * G1_", "G1_"),
+    fault("lighting/environment_disney.wgsl", "excess * step * step * 0.25", "excess * step * 0.25"),
+    fault("lighting/environment_disney.wgsl", "along.x * along.x - along.y * along.y", "along.x * along.x"),
+    fault("lighting/environment_disney.wgsl", "sqrt(sqrt(lobes.clearcoat_alpha))", "sqrt(lobes.clearcoat_alpha)"),
+    fault("lighting/environment_disney.wgsl", "mix(albedo.x, albedo.y, lobes.subsurface)", "albedo.x"),
+    fault("lighting/environment_disney.wgsl", "lobes.sheen * albedo.z", "lobes.sheen"),
+    fault("surface/tangent_vertex.wgsl", "tangent - n * dot(n, tangent)", "tangent.yzx"),
+];
+
+/// Files whose faults [`IN_DISNEY_FRAMES`] must show.
+const DISNEY_LIGHTING: [&str; 4] = [
+    "lighting/disney.wgsl",
+    "lighting/disney_albedo.wgsl",
+    "lighting/environment_disney.wgsl",
+    "surface/tangent_vertex.wgsl",
 ];
 
 impl Mutant {
@@ -249,4 +315,11 @@ fn frames_reject_every_planted_fault() {
     let gpu = gpu(Precision::Float);
     let planes = planes();
     all_are_rejected(IN_FRAMES, SEEN_IN_FRAMES.into_iter(), |mutant| mutant.rejecting_plane(&gpu, &planes));
+}
+
+#[test]
+fn disney_frames_reject_every_planted_fault() {
+    let gpu = gpu(Precision::Float);
+    let planes = disney_planes();
+    all_are_rejected(IN_DISNEY_FRAMES, DISNEY_LIGHTING.into_iter(), |mutant| mutant.rejecting_plane(&gpu, &planes));
 }

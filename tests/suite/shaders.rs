@@ -27,7 +27,7 @@ pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
         let (material, primitive) = (material(slots), primitive(slots));
         [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
             let scene_features = SceneFeatures { punctual, environment, fresnel_tail: !slots.is_multiple_of(3) };
-            let features = MaterialFeatures::of(&material, &primitive, &scene, scene_features.is_lit());
+            let features = MaterialFeatures::of(&material, &primitive, &scene, scene_features);
             ForwardFeatures {
                 scene: scene_features,
                 material: features,

@@ -8,13 +8,14 @@ use super::grid::{ALPHAS, COSINES, UNIT, colors, directions, display_light, micr
 use super::harness::{Scale, Twin};
 use glam::{DMat4, DVec3, DVec4};
 use specula::math::color::srgb_from_linear;
-use specula::math::spaces::octahedral_from_direction;
+use specula::math::spaces::{octahedral_from_direction, orthonormal_basis};
 use specula::reference::albedo::Dfg;
+use specula::reference::disney::bsdf::TangentFrame;
 use specula::reference::microfacet::Distribution;
 use specula::reference::microfacet::distribution::D_GGX_anisotropic;
 use specula::reference::microfacet::fresnel::{F_Lazanyi, F_conductor};
 use specula::reference::microfacet::masking::{V_Schlick, V_SmithGGX_separable, V_SmithGGXCorrelated_anisotropic};
-use specula::reference::{brdf, color, lights};
+use specula::reference::{brdf, color, disney, lights};
 use specula::scene::{Geometry, ToneMap};
 
 const EPS: f64 = f32::EPSILON as f64;
@@ -115,7 +116,7 @@ pub(crate) const TWINS: &[Twin] = &[
     Twin {
         file: "brdf/d_ggx_anisotropic.wgsl",
         function: "D_GGX_anisotropic",
-        grid: anisotropic_microfacets,
+        grid: anisotropic_frames,
         truth: |x| {
             let (t, b, n, h) = (vec3(x, 2), vec3(x, 5), vec3(x, 8).normalize(), vec3(x, 11).normalize());
             // What is left of t and b along n in f32 is no property of the surface.
@@ -136,10 +137,57 @@ pub(crate) const TWINS: &[Twin] = &[
         limit: 8.0 * EPS,
     },
     Twin {
+        file: "math/orthonormal.wgsl",
+        function: "any_orthonormal",
+        grid: || directions(4000).iter().map(|d| d.to_array().to_vec()).collect(),
+        truth: |x| orthonormal_basis(vec3(x, 0)).0.to_array().into(),
+        // Components of a unit vector.
+        scale: Scale::One,
+        limit: 4.0 * EPS,
+    },
+    Twin {
+        file: "brdf/d_gtr1.wgsl",
+        function: "D_GTR1",
+        grid: || microfacets().into_iter().filter(|x| x[0] < 1.0).collect(),
+        truth: |x| vec![disney::D_GTR1(x[0], vec3(x, 1).normalize().dot(vec3(x, 4).normalize()))],
+        scale: Scale::Result,
+        // As D_GGX, with the square of the denominator left out.
+        limit: 2e-6,
+    },
+    Twin {
+        file: "brdf/d_gtr2_anisotropic.wgsl",
+        function: "D_GTR2_anisotropic",
+        grid: anisotropic_microfacets,
+        truth: |x| {
+            let (n, h) = (vec3(x, 8).normalize(), vec3(x, 11).normalize());
+            let frame = TangentFrame::new(n, vec3(x, 2));
+            vec![disney::D_GTR2_anisotropic(x[0], x[1], frame.tangent.dot(h), frame.bitangent.dot(h), n.dot(h))]
+        },
+        scale: Scale::Result,
+        limit: 4e-6,
+    },
+    Twin {
+        file: "brdf/g1_smith_ggx.wgsl",
+        function: "G1_SmithGGX",
+        grid: || product(&[&ALPHAS, &[&[0.0], COSINES.as_slice()].concat()]),
+        truth: |x| vec![if x[1] > 0.0 { disney::G1_SmithGGX(x[0], x[1]) } else { 0.0 }],
+        scale: Scale::Result,
+        limit: 8.0 * EPS,
+    },
+    Twin {
         file: "brdf/v_smith_ggx_separable.wgsl",
         function: "V_SmithGGX_separable",
         grid: || product(&[&ALPHAS, &COSINES, &[&[0.0], COSINES.as_slice()].concat()]),
         truth: |x| vec![V_SmithGGX_separable(x[0], x[1], x[2].max(1e-15))],
+        scale: Scale::Result,
+        limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "brdf/fd_burley.wgsl",
+        function: "Fd_Burley",
+        grid: || product(&[&UNIT, &COSINES, &[&[0.0], COSINES.as_slice()].concat(), &COSINES]),
+        truth: |x| vec![disney::Fd_Burley(x[0], x[1], x[2], x[3])],
+        // No factor is below 1/2.
         scale: Scale::Result,
         limit: 8.0 * EPS,
     },
@@ -162,6 +210,15 @@ pub(crate) const TWINS: &[Twin] = &[
     visibility_anisotropic("lobe/visibility_anisotropic_smith_separable.wgsl", |x| {
         geometry_anisotropic(Geometry::SmithSeparable, x)
     }),
+    Twin {
+        file: "brdf/fd_subsurface.wgsl",
+        function: "Fd_Subsurface",
+        grid: || product(&[&UNIT, &COSINES, &[&[0.0], COSINES.as_slice()].concat(), &COSINES]),
+        truth: |x| vec![disney::Fd_Subsurface(x[0], x[1], x[2], x[3])],
+        // F_ss vanishes where both cosines and the roughness do; its terms are of the size of 1 / (NoV + NoL).
+        scale: Scale::Terms(|x| 1.0 + 1.0 / (x[1] + x[2])),
+        limit: 8.0 * EPS,
+    },
     Twin {
         file: "brdf/fd_lambert.wgsl",
         function: "Fd_Lambert",
@@ -284,6 +341,22 @@ fn vec3(x: &[f64], first: usize) -> DVec3 {
     DVec3::from_slice(&x[first..])
 }
 
+/// Two alphas, an orthonormal frame and a half vector: angles of many sizes in units of the alphas.
+fn anisotropic_microfacets() -> Vec<Vec<f32>> {
+    let with_frame = |(i, point): (usize, Vec<f32>)| {
+        let n = glam::Vec3::from_slice(&point[1..]).as_dvec3().normalize();
+        let side = n.any_orthonormal_vector();
+        let turn = std::f64::consts::TAU * f64::from(spread(i, 3));
+        let t = side * turn.cos() + n.cross(side) * turn.sin();
+        let b = n.cross(t);
+        // From ten times as rough along the tangent to ten times as rough across it.
+        let ratio = 10.0_f32.powf(2.0 * spread(i, 4) - 1.0);
+        let alphas = [point[0] * ratio.sqrt(), point[0] / ratio.sqrt()].map(|alpha| alpha.max(1e-4));
+        [&alphas, t.as_vec3().as_ref() as &[f32], b.as_vec3().as_ref(), &point[1..]].concat()
+    };
+    microfacets().into_iter().enumerate().map(with_frame).collect()
+}
+
 /// Directions of many lengths, those included whose square underflows, and a fallback.
 fn vectors() -> Vec<Vec<f32>> {
     let lengths = [0.0, 1e-25, 1e-16, 3e-15, 1e-6, 0.3, 1.0, 1.0 + 1e-6, 1e5, 1e18];
@@ -392,7 +465,7 @@ fn anisotropic_directions() -> Vec<Vec<f32>> {
 }
 
 /// (alpha_t, alpha_b, t, b, n, h) around the peak of the narrow direction.
-fn anisotropic_microfacets() -> Vec<Vec<f32>> {
+fn anisotropic_frames() -> Vec<Vec<f32>> {
     let mut points = Vec::new();
     for (index, n) in directions(40).into_iter().enumerate() {
         let n = n.as_dvec3().normalize();
