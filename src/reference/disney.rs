@@ -9,6 +9,7 @@
 
 pub mod albedo;
 pub mod bsdf;
+pub mod gltf;
 
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -39,8 +40,9 @@ pub fn Fd_Burley(perceptual_roughness: f64, NoV: f64, NoL: f64, LoH: f64) -> f64
     both_ways(F_D90, NoV, NoL) / PI
 }
 
-/// Approximation of subsurface scattering for base colour 1, 1/sr (Burley 2012, section 5.3 and `disney.brdf`), after the
-/// shape of Hanrahan and Krueger 1993. Reciprocal; 1 / (NoL + NoV) grows at grazing angles, times NoL it stays finite.
+/// Approximation of subsurface scattering for base colour 1, 1/sr (Burley 2012, section 5.3 and `disney.brdf`), after
+/// the shape of Hanrahan and Krueger 1993. Reciprocal; 1 / (NoL + NoV) grows at grazing angles, times NoL it stays
+/// finite.
 pub fn Fd_Subsurface(perceptual_roughness: f64, NoV: f64, NoL: f64, LoH: f64) -> f64 {
     let F_ss = both_ways(LoH * LoH * perceptual_roughness, NoV, NoL);
     1.25 / PI * (F_ss * (1.0 / (NoL + NoV) - 0.5) + 0.5)
@@ -59,7 +61,7 @@ pub fn Schlick_weight(cosine: f64) -> f64 {
 /// Smallest alpha of a lobe.
 const ALPHA_MIN: f64 = 1e-3;
 
-/// Alphas along tangent and bitangent (Burley 2012, section 5.4): the square of the roughness, apart by
+/// Alphas along tangent and bitangent (Burley 2012, section 5.4): the square of the perceptual roughness, apart by
 /// `aspect = sqrt(1 - 0.9 anisotropic)`.
 pub fn alphas(perceptual_roughness: f64, anisotropic: f64) -> (f64, f64) {
     let aspect = (1.0 - 0.9 * anisotropic).sqrt();
@@ -67,8 +69,8 @@ pub fn alphas(perceptual_roughness: f64, anisotropic: f64) -> (f64, f64) {
     ((alpha / aspect).max(ALPHA_MIN), (alpha * aspect).max(ALPHA_MIN))
 }
 
-/// Alpha of the masking of the specular lobe, from 0.25 up (Burley 2012, section 5.6): as if the roughness were in
-/// [0.5, 1], to keep smooth highlights from becoming too hot.
+/// Alpha of the masking of the specular lobe, from 0.25 up (Burley 2012, section 5.6): as if the perceptual roughness
+/// were in [0.5, 1], to keep smooth highlights from becoming too hot.
 pub fn alpha_of_masking(perceptual_roughness: f64) -> f64 {
     (0.5 + 0.5 * perceptual_roughness).powi(2)
 }
@@ -83,8 +85,8 @@ pub const CLEARCOAT_MASKING: f64 = 0.25;
 pub const CLEARCOAT_F0: f64 = 0.04;
 pub const CLEARCOAT_WEIGHT: f64 = 0.25;
 
-/// Hue and saturation of the base colour: the colour over its luminance, white for black (`disney.brdf`, whose luminance
-/// weights are rounder than those of Rec.709).
+/// Hue and saturation of the base colour: the colour over its luminance, white for black (`disney.brdf`, whose
+/// luminance weights are rounder than those of Rec.709).
 pub fn tint(base_color: DVec3) -> DVec3 {
     let luminance = base_color.dot(DVec3::new(0.3, 0.6, 0.1));
     if luminance > 0.0 { base_color / luminance } else { DVec3::ONE }
