@@ -1,5 +1,5 @@
-// ACES RRT + ODT as a rational fit (Hill 2016): input matrix sRGB -> AP1 with RRT saturation, curve, output matrix
-// back. Exposed by 1/0.6 first, as is customary.
+// ACES RRT + ODT as a rational fit (Hill 2016): input matrix sRGB -> AP1 with RRT saturation, curve, output matrix back.
+// Exposed by 1/0.6 first, as is customary.
 fn tone_map(exposed: vec3f) -> vec3f {
     const INPUT = mat3x3f(
         0.59719, 0.07600, 0.02840,

@@ -1,5 +1,4 @@
-// AgX, default look (Sobotka 2022), with the sixth-degree fit of its contrast curve by Wrensch 2023, evaluated by
-// Horner.
+// AgX, default look (Sobotka 2022), with the sixth-degree fit of its contrast curve by Wrensch 2023, evaluated by Horner.
 fn tone_map(exposed: vec3f) -> vec3f {
     const INSET = mat3x3f(
         0.842479062253094, 0.0423282422610123, 0.0423756549057051,
