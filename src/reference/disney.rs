@@ -14,7 +14,7 @@ pub mod gltf;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Generalized Trowbridge-Reitz distribution with exponent 1, 1/sr (Burley 2012, equation 4). `alpha` in (0, 1).
+/// Generalized Trowbridge-Reitz distribution with exponent 1, 1/sr (Burley 2012, appendix B). `alpha` in (0, 1).
 pub fn D_GTR1(alpha: f64, NoH: f64) -> f64 {
     let a2 = alpha * alpha;
     (a2 - 1.0) / (PI * a2.ln() * (1.0 + (a2 - 1.0) * NoH * NoH))

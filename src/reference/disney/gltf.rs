@@ -115,7 +115,7 @@ pub fn V_Neubelt(NoV: f64, NoL: f64) -> f64 {
     1.0 / (4.0 * (NoL + NoV - NoL * NoV))
 }
 
-/// Anisotropic height-correlated visibility (Heitz 2014, equations 86 and 99).
+/// Anisotropic height-correlated visibility (Heitz 2014, equation 99, of the stretched directions).
 fn V_SmithGGXCorrelatedAnisotropic(alpha: (f64, f64), v: DVec3, l: DVec3) -> f64 {
     let length = |d: DVec3| DVec3::new(alpha.0 * d.x, alpha.1 * d.y, d.z).length();
     0.5 / (l.z * length(v) + v.z * length(l))
