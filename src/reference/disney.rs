@@ -21,7 +21,7 @@ pub fn D_GTR1(alpha: f64, NoH: f64) -> f64 {
 }
 
 /// Generalized Trowbridge-Reitz distribution with exponent 2, anisotropic: GGX with two alphas, 1/sr (Burley 2012,
-/// equation 13). `ToH` and `BoH` are the half vector's cosines with tangent and bitangent.
+/// appendix B). `ToH` and `BoH` are the half vector's cosines with tangent and bitangent.
 pub fn D_GTR2_anisotropic(alpha_x: f64, alpha_y: f64, ToH: f64, BoH: f64, NoH: f64) -> f64 {
     let ellipsoid = (ToH / alpha_x).powi(2) + (BoH / alpha_y).powi(2) + NoH * NoH;
     1.0 / (PI * alpha_x * alpha_y * ellipsoid * ellipsoid)
@@ -33,7 +33,7 @@ pub fn G1_SmithGGX(alpha: f64, NoX: f64) -> f64 {
     2.0 / (1.0 + (1.0 + alpha * alpha * tan2).sqrt())
 }
 
-/// Diffuse lobe with retro-reflection at grazing angles, of base colour 1, 1/sr (Burley 2012, equations 4 and 5 of
+/// Diffuse lobe with retro-reflection at grazing angles, of base colour 1, 1/sr (Burley 2012,
 /// section 5.3). Two Schlick curves whose value at grazing incidence is 0.5 + 2 LoH^2 `perceptual_roughness`.
 pub fn Fd_Burley(perceptual_roughness: f64, NoV: f64, NoL: f64, LoH: f64) -> f64 {
     let F_D90 = 0.5 + 2.0 * LoH * LoH * perceptual_roughness;

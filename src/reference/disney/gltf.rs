@@ -103,8 +103,7 @@ fn amount_and_tint(color: DVec3, hue: DVec3) -> (f64, f64) {
     (amount, if tinted { (color / amount - DVec3::ONE).dot(toward) / toward.length_squared() } else { 0.0 })
 }
 
-/// Distribution of Charlie's cloth, 1/sr (Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF",
-/// equation 2).
+/// Distribution of Charlie's cloth, 1/sr (Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF").
 pub fn D_Charlie(alpha: f64, NoH: f64) -> f64 {
     let inverse = 1.0 / alpha;
     (2.0 + inverse) * (1.0 - NoH * NoH).max(0.0).powf(0.5 * inverse) / (2.0 * PI)
