@@ -23,8 +23,8 @@ fn disney_layered(tile: f32, layer: f32, perceptual_roughness: f32, NoV: f32) ->
 }
 
 // Split-sum pair of the specular lobe: its albedo is F0 x + y. `cos_2phi` is of the
-// view's azimuth from the tangent. A series of cosines of 2, 4, 6... times the azimuth, relative to the mean, whose root
-// comes first: the lobe falls toward grazing angles as NoV squared.
+// view's azimuth from the tangent. A series of cosines of 2, 4, 6... times the azimuth, relative to the mean, whose
+// root comes first: the lobe falls toward grazing angles as NoV squared.
 fn E_disney_specular(perceptual_roughness: f32, anisotropic: f32, NoV: f32, cos_2phi: f32) -> vec2f {
     let layer = -log(1.0 - 0.9 * anisotropic) * ((DISNEY_LAYERS - 1.0) / LN_10);
     let first = disney_layered(0.0, layer, perceptual_roughness, NoV);

@@ -2,7 +2,7 @@
 #import "lighting/prefiltered.wgsl"
 
 // Reflections that stand for a lobe that is longer than wide.
-const TAPS: i32 = 9;
+const TAPS: i32 = 15;
 
 // The environment as the specular lobe sees it. A prefiltered lobe is round: several, as narrow as the lobe across the
 // tangent, lie along it. GGX with the excess of alpha_x over alpha_y has the share (1 + c) / 2 of its slopes below

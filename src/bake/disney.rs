@@ -1,12 +1,13 @@
 //! The directional albedos of the Disney lobes, as they are embedded in the library.
 //!
-//! `assets/disney.bin` is the bare texture: tiles of [`SIDE`] x [`SIDE`] texels above one another, each with sqrt(NoV) to
-//! the right and a parameter of a lobe downward, end points on texel centres. A texel is four little-endian unorm16.
+//! `assets/disney.bin` is the bare texture: tiles of [`SIDE`] x [`SIDE`] texels above one another, each with
+//! sqrt(NoV) to the right and a parameter of a lobe downward, end points on texel centres. A texel is four
+//! little-endian unorm16.
 //!
 //! - Four tiles for each of 8 layers, over perceptual roughness; the logarithm of 1 - 0.9 anisotropic falls evenly to
-//!   that of 0.1. The specular lobe's albedo is `F0 scale + bias`, and both are series in the view's azimuth: the root of the
-//!   mean, then coefficients of the cosines of 2, 4, 6... times the azimuth, relative to the mean, from -1.5 to 1.5.
-//!   The first tile holds mean and three coefficients of `scale`, the second four more, the others those of `bias`.
+//!   that of 0.1. The specular lobe's albedo is `F0 scale + bias`, and both are series in the view's azimuth: the root
+//!   of the mean, then coefficients of the cosines of 2, 4, 6... times the azimuth, relative to the mean, from -1.5 to
+//!   1.5. The first tile holds mean and three coefficients of `scale`, the second four more, the others those of `bias`.
 //! - Tile 32: half the albedo of `Fd_Burley`, half of that of `Fd_Subsurface` and the root of that of the sheen, over
 //!   perceptual roughness; the root of the clearcoat's albedo over its gloss.
 //!

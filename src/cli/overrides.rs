@@ -7,8 +7,8 @@ use glam::Vec3;
 
 /// Applies every `NAME.PARAMETER=VALUE` in order. NAME is a material's name or index, `*` stands for any text.
 ///
-/// A value replaces the texture of its slot too: what is asked for is what is seen. Metallic and roughness share a
-/// texture, and either replaces it. A `disney.*` parameter makes a Disney material of one that is none.
+/// A value replaces the texture of its slot too: what is asked for is what is seen. Metallic and perceptual roughness
+/// share a texture, and either replaces it. A `disney.*` parameter makes a Disney material of one that is none.
 ///
 /// # Errors
 /// One line with the override and what is wrong: no such material, no such parameter, or a value out of range.
@@ -175,7 +175,7 @@ mod tests {
         for (text, problem) in [
             ("Visor.metallic=1", "no material is called `Visor`; there are 3, among them Helmet, Glass.front, Glass"),
             ("Helmet.shininess=1", "no parameter is called `shininess`"),
-            ("*.disney.roughness=1", "no parameter is called disney.roughness"),
+            ("*.disney.gloss=1", "no parameter is called disney.gloss"),
             ("*.metallic=2", "`2` is not a number from 0 to 1"),
             ("*.metallic=NaN", "`NaN` is not a number"),
             ("*.disney.sheen=", "`` is not a number"),

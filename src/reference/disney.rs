@@ -9,18 +9,19 @@
 
 pub mod albedo;
 pub mod bsdf;
+pub mod gltf;
 
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Generalized Trowbridge-Reitz distribution with exponent 1, 1/sr (Burley 2012, equation 4). `alpha` in (0, 1).
+/// Generalized Trowbridge-Reitz distribution with exponent 1, 1/sr (Burley 2012, appendix B). `alpha` in (0, 1).
 pub fn D_GTR1(alpha: f64, NoH: f64) -> f64 {
     let a2 = alpha * alpha;
     (a2 - 1.0) / (PI * a2.ln() * (1.0 + (a2 - 1.0) * NoH * NoH))
 }
 
 /// Generalized Trowbridge-Reitz distribution with exponent 2, anisotropic: GGX with two alphas, 1/sr (Burley 2012,
-/// equation 13). `ToH` and `BoH` are the half vector's cosines with tangent and bitangent.
+/// appendix B). `ToH` and `BoH` are the half vector's cosines with tangent and bitangent.
 pub fn D_GTR2_anisotropic(alpha_x: f64, alpha_y: f64, ToH: f64, BoH: f64, NoH: f64) -> f64 {
     let ellipsoid = (ToH / alpha_x).powi(2) + (BoH / alpha_y).powi(2) + NoH * NoH;
     1.0 / (PI * alpha_x * alpha_y * ellipsoid * ellipsoid)
@@ -32,15 +33,16 @@ pub fn G1_SmithGGX(alpha: f64, NoX: f64) -> f64 {
     2.0 / (1.0 + (1.0 + alpha * alpha * tan2).sqrt())
 }
 
-/// Diffuse lobe with retro-reflection at grazing angles, of base colour 1, 1/sr (Burley 2012, equations 4 and 5 of
+/// Diffuse lobe with retro-reflection at grazing angles, of base colour 1, 1/sr (Burley 2012,
 /// section 5.3). Two Schlick curves whose value at grazing incidence is 0.5 + 2 LoH^2 `perceptual_roughness`.
 pub fn Fd_Burley(perceptual_roughness: f64, NoV: f64, NoL: f64, LoH: f64) -> f64 {
     let F_D90 = 0.5 + 2.0 * LoH * LoH * perceptual_roughness;
     both_ways(F_D90, NoV, NoL) / PI
 }
 
-/// Approximation of subsurface scattering for base colour 1, 1/sr (Burley 2012, section 5.3 and `disney.brdf`), after the
-/// shape of Hanrahan and Krueger 1993. Reciprocal; 1 / (NoL + NoV) grows at grazing angles, times NoL it stays finite.
+/// Approximation of subsurface scattering for base colour 1, 1/sr (Burley 2012, section 5.3 and `disney.brdf`), after
+/// the shape of Hanrahan and Krueger 1993. Reciprocal; 1 / (NoL + NoV) grows at grazing angles, times NoL it stays
+/// finite.
 pub fn Fd_Subsurface(perceptual_roughness: f64, NoV: f64, NoL: f64, LoH: f64) -> f64 {
     let F_ss = both_ways(LoH * LoH * perceptual_roughness, NoV, NoL);
     1.25 / PI * (F_ss * (1.0 / (NoL + NoV) - 0.5) + 0.5)
@@ -59,7 +61,7 @@ pub fn Schlick_weight(cosine: f64) -> f64 {
 /// Smallest alpha of a lobe.
 const ALPHA_MIN: f64 = 1e-3;
 
-/// Alphas along tangent and bitangent (Burley 2012, section 5.4): the square of the roughness, apart by
+/// Alphas along tangent and bitangent (Burley 2012, section 5.4): the square of the perceptual roughness, apart by
 /// `aspect = sqrt(1 - 0.9 anisotropic)`.
 pub fn alphas(perceptual_roughness: f64, anisotropic: f64) -> (f64, f64) {
     let aspect = (1.0 - 0.9 * anisotropic).sqrt();
@@ -67,8 +69,8 @@ pub fn alphas(perceptual_roughness: f64, anisotropic: f64) -> (f64, f64) {
     ((alpha / aspect).max(ALPHA_MIN), (alpha * aspect).max(ALPHA_MIN))
 }
 
-/// Alpha of the masking of the specular lobe, from 0.25 up (Burley 2012, section 5.6): as if the roughness were in
-/// [0.5, 1], to keep smooth highlights from becoming too hot.
+/// Alpha of the masking of the specular lobe, from 0.25 up (Burley 2012, section 5.6): as if the perceptual roughness
+/// were in [0.5, 1], to keep smooth highlights from becoming too hot.
 pub fn alpha_of_masking(perceptual_roughness: f64) -> f64 {
     (0.5 + 0.5 * perceptual_roughness).powi(2)
 }
@@ -83,8 +85,8 @@ pub const CLEARCOAT_MASKING: f64 = 0.25;
 pub const CLEARCOAT_F0: f64 = 0.04;
 pub const CLEARCOAT_WEIGHT: f64 = 0.25;
 
-/// Hue and saturation of the base colour: the colour over its luminance, white for black (`disney.brdf`, whose luminance
-/// weights are rounder than those of Rec.709).
+/// Hue and saturation of the base colour: the colour over its luminance, white for black (`disney.brdf`, whose
+/// luminance weights are rounder than those of Rec.709).
 pub fn tint(base_color: DVec3) -> DVec3 {
     let luminance = base_color.dot(DVec3::new(0.3, 0.6, 0.1));
     if luminance > 0.0 { base_color / luminance } else { DVec3::ONE }

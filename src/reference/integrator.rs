@@ -287,8 +287,8 @@ mod tests {
         let coated = Disney { clearcoat: 1.0, clearcoat_gloss: 0.2, ..disney };
         let surfaces = [disney, coated].map(|disney| Surface { disney: Some(disney), ..surface(0.4, 0.5) });
         let worst = worst_error_of(&surfaces, DVec3::new(0.2, 1.0, 0.3));
-        println!("{worst:e}");
-        assert!(worst < 3e-3, "{worst:e}");
+        // Measured 1.9e-4, margin 2.
+        assert!(worst < 4e-4, "{worst:e}");
     }
 
     #[test]

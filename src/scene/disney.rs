@@ -1,4 +1,4 @@
-//! What the Disney BRDF asks of a material beside base colour, metallic and roughness.
+//! What the Disney BRDF asks of a material beside base colour, metallic and perceptual roughness.
 
 use crate::math::parameter::ParameterError;
 
@@ -99,7 +99,7 @@ mod tests {
             *disney.parameter_mut(name).unwrap() = 0.25;
             assert!(format!("{disney:?}").contains(&format!(" {name}: 0.25")), "{disney:?}");
         }
-        assert_eq!(Disney::default().parameter_mut("roughness"), None);
+        assert_eq!(Disney::default().parameter_mut("metallic"), None);
         assert_eq!(Disney::default().checked(), Ok(Disney::default()));
     }
 }

@@ -37,26 +37,22 @@ pub fn attributes(vertex: &VertexFeatures) -> Vec<Attribute> {
     attributes
 }
 
-/// Where a triangle covers some samples of a pixel but not its middle, attributes are taken inside the triangle: beyond
-/// its edge they would be extrapolated, and silhouettes would sparkle.
-const CENTROID: &str = "@interpolate(perspective, centroid) ";
-
 /// The `<interface>` slot: `VertexIn`, `VertexOut`, `vertex_out` and `vertex_color`.
 pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     let attributes = attributes(vertex);
-    let fields = |first: &str, interpolation: &str| {
+    let fields = |first: &str| {
         let numbered = attributes.iter().enumerate();
         numbered.fold(String::new(), |mut text, (location, attribute)| {
             let name = if location == 0 { first } else { &attribute.name };
-            let _ = writeln!(text, "    @location({location}) {interpolation}{name}: {},", attribute.wgsl);
+            let _ = writeln!(text, "    @location({location}) {name}: {},", attribute.wgsl);
             text
         })
     };
     let mut text = format!(
         "struct VertexIn {{\n    @builtin(instance_index) instance: u32,\n{}}}\n\n\
          struct VertexOut {{\n    @builtin(position) @invariant position_in_clip: vec4f,\n{}}}\n\n",
-        fields("position", ""),
-        fields("position_in_world", CENTROID)
+        fields("position"),
+        fields("position_in_world")
     );
     text.push_str(
         "fn vertex_out(in: VertexIn) -> VertexOut {\n\

@@ -45,6 +45,7 @@ const EVERYTHING: &[&str] = &[
     "math",
     "passes",
     "progress",
+    "radiometry",
     "reference",
     "renderer",
     "scene",

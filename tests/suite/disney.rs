@@ -1,5 +1,5 @@
-//! The Disney BRDF on the GPU against float64: lamps pixel by pixel, the furnace against quadrature, and the environment
-//! against the reference renderer.
+//! The Disney BRDF on the GPU against float64: lamps pixel by pixel, the furnace against quadrature, and the
+//! environment against the reference renderer.
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use crate::lit_plane::{Plane, disney_planes};
@@ -71,7 +71,8 @@ fn spheres_under_a_point_light_are_the_references() {
         let frame = draw(&gpu, &scene, &view, EXACT);
         let error = relative_rms(&frame.radiance.unwrap(), &trace(&scene, &view, 1));
         println!("{name}: relative RMS {error:.2e}");
-        assert!(error < 1e-3, "{name}: {error:e}");
+        // Measured 2.5e-6 for the smooth one, below 1e-6 for the others; margin 4.
+        assert!(error < 1e-5, "{name}: {error:e}");
     }
 }
 
@@ -134,6 +135,7 @@ fn in_a_furnace_every_material_returns_its_albedo() {
             }
         }
         println!("{name}: worst {worst:.2e}, {grazing:.2e} where NoV < 0.1");
+        // Measured 3.8e-3 for the brushed metal, 3.3e-3 for the smooth one and 1e-3 at most for the others.
         assert!(worst < 5e-3, "{name}: {worst:e}");
     }
 }
@@ -149,5 +151,7 @@ fn the_studio_is_close_to_the_reference() {
         let frame = draw(&gpu, &scene, &view, CaptureOptions { samples: 1, ..Default::default() });
         let error = relative_rms(&frame.radiance.unwrap(), &trace(&scene, &view, 64));
         println!("{name}: relative RMS {error:.2e}");
+        // Measured 0.107 for the metals, brushed or not, which is what the standard lobe has too. Margin 1.4.
+        assert!(error < 0.15, "{name}: {error:e}");
     }
 }

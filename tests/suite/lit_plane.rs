@@ -230,15 +230,15 @@ fn disney_split_sum(
     let (alpha_x, alpha_y) = disney::alphas(r, f64::from(disney.anisotropic));
     let excess = alpha_x * alpha_x - alpha_y * alpha_y;
     let tap = |i: u32| {
-        let c: f64 = (2.0 * f64::from(i) + 1.0) / 9.0 - 1.0;
+        let c: f64 = (2.0 * f64::from(i) + 1.0) / 15.0 - 1.0;
         // The slope below which lies the share (1 + c) / 2 of them.
         let facing = (n + frame.tangent * (excess.sqrt() * c.asin().tan())).normalize();
         let NoL = n.dot(2.0 * facing.dot(v) * facing - v).max(1e-9);
         let weight = facing.dot(v).max(0.0) * disney::G1_SmithGGX(disney::alpha_of_masking(r), NoL) / facing.dot(n);
-        let alpha = (alpha_y * alpha_y + excess / 81.0).sqrt();
+        let alpha = (alpha_y * alpha_y + excess / 225.0).sqrt();
         (radiance_around(facing, alpha.sqrt().min(1.0)) * weight).extend(weight)
     };
-    let taps: DVec4 = (0..9).map(tap).sum();
+    let taps: DVec4 = (0..15).map(tap).sum();
     let pair = quadrature.specular(r, f64::from(disney.anisotropic), NoV, y.atan2(x));
     let (specular, tint) = (f64::from(disney.specular), f64::from(disney.specular_tint));
     let F0 = disney::specular_f0(material.base_color, material.metallic, specular, tint);

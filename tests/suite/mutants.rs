@@ -126,7 +126,7 @@ const IN_FUNCTIONS: &[Mutant] = &[
 /// Faults in lighting and surfaces, which need a frame to show.
 const IN_FRAMES: &[Mutant] = &[
     fault("lighting/lobes.wgsl", "max(r * r, ALPHA_MIN)", "max(r, ALPHA_MIN)"),
-    fault("lighting/lobes.wgsl", "max(NOV_MIN - dot(surface.n, surface.v), 0.0)", "0.0"),
+    fault("lighting/lift_view.wgsl", "max(NOV_MIN - dot(n, v), 0.0)", "0.0"),
     fault("lighting/lobes.wgsl", "(1.0 - surface.metallic) * (1.0 - E_s)", "(1.0 - surface.metallic)"),
     fault("lighting/lobes.wgsl", "(lobes.diffuse_norm * passed)", "lobes.diffuse_norm"),
     fault("lighting/lobes.wgsl", "(lobes.multiscatter_norm * loss)", "lobes.multiscatter_norm"),
@@ -188,7 +188,7 @@ const IN_FRAMES: &[Mutant] = &[
 ];
 
 /// Files that need a frame to be tested and have faults in [`IN_FRAMES`].
-const SEEN_IN_FRAMES: [&str; 17] = [
+const SEEN_IN_FRAMES: [&str; 18] = [
     "lighting/dfg.wgsl",
     "lighting/environment.wgsl",
     "lighting/lit.wgsl",
@@ -196,6 +196,7 @@ const SEEN_IN_FRAMES: [&str; 17] = [
     "lighting/fresnel_lazanyi.wgsl",
     "lighting/fresnel_schlick.wgsl",
     "lighting/fresnel_tail.wgsl",
+    "lighting/lift_view.wgsl",
     "lighting/lobes.wgsl",
     "lighting/prefiltered.wgsl",
     "lighting/punctual.wgsl",

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use specula::gpu::bindings::{background_entries, display_entries, frame_entries, material_entries};
 use specula::scene::{
-    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap,
-    Topology, UvTransform,
+    AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Sampler, Scene, Texture, TextureRef, TextureSlot,
+    ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
     Composed, DisplayFeatures, ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
@@ -16,6 +16,17 @@ use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 
 /// Every set of texture slots under every kind of light, with the other switches running through their values.
 pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
+    let of_slots = |slots: u32| {
+        // Every set of slots with the standard lobes, some with the Disney lobes too.
+        let disney = (slots % 5 < 3).then(|| Disney { anisotropic: (slots / 2 % 2) as f32, ..Default::default() });
+        let materials = [Some(None), disney.map(Some)].into_iter().flatten();
+        materials.flat_map(move |disney| of_material(&Material { disney, ..material(slots) }, &primitive(slots), slots))
+    };
+    (0..1 << TextureSlot::ALL.len()).flat_map(of_slots).collect()
+}
+
+/// A material under every kind of light.
+fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [ForwardFeatures; 4] {
     let scene = Scene {
         textures: vec![
             Texture { image: 0, sampler: Sampler::default() },
@@ -23,22 +34,18 @@ pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
         ],
         ..Default::default()
     };
-    let of_slots = |slots: u32| {
-        let (material, primitive) = (material(slots), primitive(slots));
-        [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
-            let scene_features = SceneFeatures { punctual, environment, fresnel_tail: !slots.is_multiple_of(3) };
-            let features = MaterialFeatures::of(&material, &primitive, &scene, scene_features);
-            ForwardFeatures {
-                scene: scene_features,
-                material: features,
-                vertex: VertexFeatures::of(&features, &primitive),
-                energy_compensation: !slots.is_multiple_of(5),
-                geometry: Geometry::ALL[slots as usize % 5],
-                topology: Topology::Triangles,
-            }
-        })
-    };
-    (0..1 << TextureSlot::ALL.len()).flat_map(of_slots).collect()
+    [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
+        let scene_features = SceneFeatures { punctual, environment, fresnel_tail: !slots.is_multiple_of(3) };
+        let features = MaterialFeatures::of(material, primitive, &scene, scene_features);
+        ForwardFeatures {
+            scene: scene_features,
+            material: features,
+            vertex: VertexFeatures::of(&features, primitive),
+            energy_compensation: !slots.is_multiple_of(5),
+            geometry: Geometry::ALL[slots as usize % 5],
+            topology: Topology::Triangles,
+        }
+    })
 }
 
 fn material(slots: u32) -> Material {
@@ -135,8 +142,9 @@ fn forward_modules_use_all_that_is_bound_and_nothing_else() {
     for features in forward_features() {
         let used = used(&forward_module(&ShaderSources::default(), &features).unwrap());
         let mut offered = offered(&[frame_entries(features.scene), material_entries(&features.material)]);
-        if features.material.shading == Shading::Unlit {
-            // Group 0 is the scene's: an unlit surface among lit ones leaves its light alone.
+        if matches!(features.material.shading, Shading::Unlit | Shading::Disney) {
+            // Group 0 is the scene's: an unlit surface among lit ones leaves its light alone, and a Disney one what the
+            // standard lobes read.
             offered.retain(|(group, binding), _| *group > 0 || used.contains_key(&(0, *binding)));
         }
         assert_eq!(used, offered, "{features}");

@@ -129,7 +129,7 @@ pub fn pdf_clearcoat_reflection(alpha: f64, v: DVec3, l: DVec3) -> f64 {
     if VoH <= 0.0 || h.z <= 0.0 { 0.0 } else { D_GTR1(alpha, h.z) * h.z / (4.0 * VoH) }
 }
 
-/// A facet of the GTR1 distribution with density D NoH (Burley 2012, equation 2 of appendix B.2), for `u` in (0, 1)^2.
+/// A facet of the GTR1 distribution with density D NoH (Burley 2012, appendix B), for `u` in (0, 1)^2.
 pub fn sample_clearcoat_normal(alpha: f64, u: glam::DVec2) -> DVec3 {
     let a2 = alpha * alpha;
     let cos2 = ((1.0 - a2.powf(1.0 - u.x)) / (1.0 - a2)).clamp(0.0, 1.0);
