@@ -3,7 +3,7 @@
 //! `cargo run --release --example disney_grid` writes `docs/pictures/disney.png`; a path as the argument writes
 //! elsewhere.
 
-use glam::{DMat4, DVec3, UVec2, Vec3, Vec4};
+use glam::{DMat4, DVec3, UVec2, Vec3};
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use specula::bake::{environment, studio};
@@ -12,7 +12,7 @@ use specula::gpu::{Gpu, GpuOptions, GpuRequest};
 use specula::progress::Silent;
 use specula::renderer::Renderer;
 use specula::scene::{
-    Background, Camera, Disney, Environment, Light, LightKind, Material, Mesh, Node, Projection, Scene, ToneMap, View,
+    Background, Camera, Environment, Light, LightKind, Mesh, Node, Projection, Scene, ToneMap, View, disney_grid::ROWS,
     shapes,
 };
 
@@ -28,33 +28,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let png = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive);
     png.write_image(&pixels, size.x, size.y, image::ExtendedColorType::Rgb8)?;
     Ok(())
-}
-
-/// The material of a row at `value` in [0, 1].
-type Row = fn(value: f32) -> Material;
-
-/// From top to bottom. The base colour of each shows the effect.
-const ROWS: [Row; 10] = [
-    |subsurface| disney([0.80, 0.42, 0.30], 0.0, 0.6, Disney { subsurface, ..Disney::default() }),
-    |metallic| disney([0.92, 0.60, 0.22], metallic, 0.25, Disney::default()),
-    |specular| disney([0.60, 0.05, 0.06], 0.0, 0.25, Disney { specular, ..Disney::default() }),
-    |specular_tint| disney([0.05, 0.22, 0.60], 0.0, 0.2, Disney { specular: 1.0, specular_tint, ..Disney::default() }),
-    |roughness| disney([0.10, 0.32, 0.24], 0.0, roughness, Disney { specular: 0.7, ..Disney::default() }),
-    |anisotropic| disney([0.86, 0.68, 0.50], 1.0, 0.5, Disney { anisotropic, ..Disney::default() }),
-    |sheen| disney([0.07, 0.015, 0.10], 0.0, 0.9, Disney { specular: 0.2, sheen, ..Disney::default() }),
-    |sheen_tint| {
-        disney([0.16, 0.02, 0.01], 0.0, 0.9, Disney { specular: 0.2, sheen: 1.0, sheen_tint, ..Disney::default() })
-    },
-    |clearcoat| disney([0.26, 0.012, 0.02], 0.2, 0.7, Disney { specular: 0.3, clearcoat, ..Disney::default() }),
-    |clearcoat_gloss| {
-        let disney_only = Disney { specular: 0.3, clearcoat: 1.0, clearcoat_gloss, ..Disney::default() };
-        disney([0.02, 0.035, 0.10], 0.2, 0.7, disney_only)
-    },
-];
-
-fn disney(base_color: [f32; 3], metallic: f32, perceptual_roughness: f32, disney: Disney) -> Material {
-    let base_color = Vec4::new(base_color[0], base_color[1], base_color[2], 1.0);
-    Material { base_color, metallic, perceptual_roughness, disney: Some(disney), ..Material::default() }
 }
 
 /// The size of the picture with cells of `cell_px` pixels, and its pixels: three bytes each, from the top left.
@@ -74,7 +47,7 @@ pub fn frame(cell_px: u32) -> Result<(UVec2, Vec<u8>), Box<dyn std::error::Error
 /// Unit cells, the first sphere at the origin, rows downward.
 fn scene() -> Scene {
     let mut scene = Scene { environment: Some(Environment::new(studio::studio())), ..Scene::default() };
-    for (row, material_of) in ROWS.iter().enumerate() {
+    for (row, (_, material_of)) in ROWS.iter().enumerate() {
         for column in 0..COLUMNS {
             let index = scene.meshes.len();
             scene.materials.push(material_of(column as f32 / (COLUMNS - 1) as f32));

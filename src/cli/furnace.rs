@@ -1,5 +1,6 @@
 //! `specula furnace`: which materials obey the laws of reflection.
 
+mod disney;
 mod grid;
 mod model;
 mod plot;
@@ -10,10 +11,10 @@ use super::output;
 use super::render::Switch;
 use crate::math::parameter::ParameterError;
 use crate::reference::albedo::DirectionalAlbedo;
-use crate::reference::brdf::alpha_from_perceptual_roughness;
 use crate::reference::bsdf::SurfaceMaterial;
-use crate::reference::laws::{ACCURACY, LawReport, StandardBrdf, Violation};
-use crate::reference::microfacet::{Distribution, Microfacet};
+use crate::reference::disney::bsdf::DisneyMaterial;
+use crate::reference::laws::{ACCURACY, DisneyBrdf, LawReport, StandardBrdf, Violation};
+use crate::reference::microfacet::Microfacet;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,9 @@ pub(super) struct FurnaceArgs {
     /// Each material is checked with its factors alone and, where it has textures, at the corners of what they hold:
     /// lowest and highest perceptual roughness and metallic, with the brightest base colour and specular.
     model: Option<PathBuf>,
+    /// Check the materials of the Disney grid: each parameter of the BRDF from 0 to 1.
+    #[arg(long, conflicts_with_all = ["model", "ndf", "geometry", "fresnel"])]
+    disney_grid: bool,
     #[command(flatten)]
     grid: grid::GridArgs,
     /// Give back the energy that single-scattering microfacets lose.
@@ -53,6 +57,7 @@ struct Subject {
 #[derive(Debug, Clone)]
 enum SurfaceKind {
     Standard(SurfaceMaterial),
+    Disney(DisneyMaterial),
     Lobe(Microfacet),
 }
 
@@ -68,6 +73,7 @@ pub(super) fn run(args: &FurnaceArgs) -> Result<(), CliError> {
     ParameterError::check("tolerance", args.tolerance, 0.0..=1.0, "from 0 to 1")?;
     let subjects = match &args.model {
         Some(path) => model::subjects(path)?,
+        None if args.disney_grid => disney::grid(),
         None => args.grid.subjects()?,
     };
     let compensation = args.energy_compensation == Switch::On;
@@ -93,10 +99,10 @@ fn check(subjects: Vec<Subject>, energy_compensation: bool, tolerance: f64) -> R
     let check = |subject: Subject| {
         let report = match &subject.surface {
             SurfaceKind::Standard(material) => {
-                let distribution = Distribution::ggx(alpha_from_perceptual_roughness(material.perceptual_roughness))?;
                 let brdf = StandardBrdf { table: &table, material: *material, energy_compensation };
-                LawReport::new(&brdf, Some(&distribution), ACCURACY)
+                LawReport::new(&brdf, Some(&material.distribution()), ACCURACY)
             }
+            SurfaceKind::Disney(material) => LawReport::new(&DisneyBrdf { material: *material }, None, ACCURACY),
             SurfaceKind::Lobe(lobe) => LawReport::new(lobe, Some(&lobe.distribution), ACCURACY),
         };
         let violations = report.violations(tolerance);

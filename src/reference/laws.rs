@@ -8,7 +8,7 @@ mod hemisphere;
 mod pairs;
 
 pub use albedo::{AlbedoReport, AlbedoSample, check_albedo, directional_albedo};
-pub use brdf::{Brdf, Lobe, StandardBrdf};
+pub use brdf::{Brdf, DisneyBrdf, Lobe, StandardBrdf};
 pub use facets::{FacetReport, check_facets};
 pub use pairs::{PairReport, check_pairs};
 

@@ -5,6 +5,7 @@
 
 mod camera;
 mod disney;
+pub mod disney_grid;
 mod environment;
 pub mod framing;
 mod image;

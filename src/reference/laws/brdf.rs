@@ -2,6 +2,8 @@
 
 use crate::reference::albedo::DirectionalAlbedo;
 use crate::reference::bsdf::{Bsdf, ModelChoices, SurfaceMaterial};
+use crate::reference::disney::bsdf::{DisneyBsdf, DisneyMaterial, TangentFrame};
+use crate::reference::disney::{alpha_of_clearcoat, alphas};
 use crate::reference::microfacet::{Distribution, Microfacet};
 use glam::DVec3;
 
@@ -85,6 +87,36 @@ impl Brdf for StandardBrdf<'_> {
 
     fn is_isotropic(&self) -> bool {
         self.material.anisotropy.is_none()
+    }
+}
+
+/// The Disney BRDF.
+#[derive(Debug)]
+pub struct DisneyBrdf {
+    pub material: DisneyMaterial,
+}
+
+impl Brdf for DisneyBrdf {
+    fn evaluate(&self, v: DVec3, l: DVec3) -> DVec3 {
+        if v.z <= 0.0 || l.z <= 0.0 {
+            return DVec3::ZERO;
+        }
+        DisneyBsdf::new(&self.material, TangentFrame::LOCAL, v).evaluate(l)
+    }
+
+    /// The clearcoat, where there is one, is mostly narrower than the base.
+    fn lobe(&self) -> Lobe {
+        let parameters = &self.material.parameters;
+        let (alpha_x, alpha_y) = alphas(self.material.perceptual_roughness, parameters.anisotropic.into());
+        let coat = alpha_of_clearcoat(parameters.clearcoat_gloss.into());
+        if parameters.clearcoat > 0.0 && coat < alpha_y {
+            return Lobe::round(coat);
+        }
+        Lobe::of(&Distribution::GgxAnisotropic { alpha_x, alpha_y, rotation_rad: 0.0 })
+    }
+
+    fn is_isotropic(&self) -> bool {
+        self.material.parameters.anisotropic == 0.0
     }
 }
 
