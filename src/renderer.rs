@@ -66,15 +66,9 @@ impl Renderer {
 
     /// A renderer some of whose shader files are replaced.
     pub fn with_shaders(device: &wgpu::Device, queue: &wgpu::Queue, sources: ShaderSources) -> Self {
-        let clamp_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("clamp"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         Self {
             sources,
-            shared: SharedTextures { dfg: upload_dfg(device, queue), clamp_sampler },
+            shared: shared_textures(device, queue),
             forward: ForwardPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
@@ -178,6 +172,17 @@ fn check_size(device: &wgpu::Device, view: &View) -> Result<(), RenderError> {
     let (width, height) = (view.size_px.x, view.size_px.y);
     let fits = (1..=allowed).contains(&width) && (1..=allowed).contains(&height);
     if fits { Ok(()) } else { Err(RenderError::Size { width, height, allowed }) }
+}
+
+/// What every lit scene reads: the split-sum table, and the sampler for tables.
+pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> SharedTextures {
+    let clamp_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("clamp"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    });
+    SharedTextures { dfg: upload_dfg(device, queue), clamp_sampler }
 }
 
 fn upload_dfg(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {

@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 
-macro_rules! sources {
+/// The files at these paths under `shaders/`, with their texts; for a source file two folders below the root.
+macro_rules! embedded {
     ($($path:literal),* $(,)?) => {
-        /// Every file under `shaders/`: its path there, and its text.
-        pub const SOURCES: &[(&str, &str)] = &[$(($path, include_str!(concat!("../../shaders/", $path)))),*];
+        &[$(($path, include_str!(concat!("../../shaders/", $path)))),*]
     };
 }
 
-sources![
+pub(crate) use embedded;
+
+/// Every file under `shaders/` that a frame can be made of: its path there, and its text.
+pub const SOURCES: &[(&str, &str)] = embedded![
     "brdf/d_ggx.wgsl",
     "brdf/f_schlick.wgsl",
     "brdf/fd_lambert.wgsl",
@@ -29,6 +32,7 @@ sources![
     "lighting/environment.wgsl",
     "lighting/environment_none.wgsl",
     "lighting/frame.wgsl",
+    "lighting/lights.wgsl",
     "lighting/lit.wgsl",
     "lighting/lobes.wgsl",
     "lighting/punctual.wgsl",
@@ -38,6 +42,7 @@ sources![
     "lobe/multiscatter_kulla_conty.wgsl",
     "lobe/multiscatter_none.wgsl",
     "math/constants.wgsl",
+    "math/half_range.wgsl",
     "math/octahedral.wgsl",
     "math/vectors.wgsl",
     "pass/background.wgsl",
@@ -53,6 +58,7 @@ sources![
     "surface/normal_none.wgsl",
     "surface/normal_vertex.wgsl",
     "surface/surface.wgsl",
+    "surface/visible_point.wgsl",
 ];
 
 /// What imports find: the embedded files, any of which may be replaced, to try out a change without a build or to plant a

@@ -8,5 +8,6 @@ mod goldens;
 mod lit_plane;
 mod mutants;
 mod shaders;
+mod stability;
 mod support;
 mod twins;

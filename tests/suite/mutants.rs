@@ -2,10 +2,10 @@
 
 use crate::lit_plane::{Plane, planes};
 use crate::support::gpu;
-use crate::twins::harness::Twin;
-use crate::twins::{files, rows::TWINS};
+use crate::twins::files;
 use specula::gpu::Gpu;
 use specula::gpu::formats::Precision;
+use specula::proof::{TWINS, Twin};
 use specula::shader::ShaderSources;
 use std::collections::BTreeSet;
 
@@ -37,7 +37,10 @@ const IN_FUNCTIONS: &[Mutant] = &[
     fault("brdf/fd_lambert.wgsl", "return INV_PI", "return 1.0"),
     fault("math/constants.wgsl", "0.318309886183791", "0.31831"),
     fault("math/vectors.wgsl", "inverseSqrt(", "sqrt("),
-    fault("math/vectors.wgsl", "length_squared > 1e-30", "length_squared > 1e-20"),
+    fault("math/vectors.wgsl", "LENGTH_MIN: f32 = 1e-30", "LENGTH_MIN: f32 = 1e-15"),
+    fault("math/vectors.wgsl", "v / max(largest, LENGTH_MIN)", "v"),
+    fault("math/vectors.wgsl", "LENGTH_MAX: f32 = 1e37", "LENGTH_MAX: f32 = 1e19"),
+    fault("math/half_range.wgsl", "65504.0", "65520.0"),
     fault("math/octahedral.wgsl", "abs(d.zx)", "abs(d.xz)"),
     fault("math/octahedral.wgsl", "d.xz >= vec2f(0.0)", "d.xz > vec2f(0.0)"),
     fault("math/octahedral.wgsl", "d.xz, d.y >= 0.0", "d.zx, d.y >= 0.0"),
@@ -50,7 +53,11 @@ const IN_FUNCTIONS: &[Mutant] = &[
     fault("lobe/multiscatter_none.wgsl", "vec3f(0.0)", "F0"),
     fault("light/attenuation.wgsl", "1.0 - x * x", "1.0 - x"),
     fault("light/attenuation.wgsl", "saturate(1.0 - x * x)", "(1.0 - x * x)"),
-    fault("light/attenuation.wgsl", "max(distance_squared, DISTANCE_SQUARED_MIN)", "distance_squared"),
+    fault(
+        "light/attenuation.wgsl",
+        "clamp(distance_squared, DISTANCE_SQUARED_MIN, DISTANCE_SQUARED_MAX)",
+        "distance_squared",
+    ),
     fault("light/attenuation.wgsl", "f32 = 1e-4", "f32 = 1e-2"),
     fault("light/attenuation.wgsl", "return x * x", "return x"),
     fault("light/attenuation.wgsl", "scale + offset)", "scale - offset)"),
@@ -105,7 +112,7 @@ const IN_FRAMES: &[Mutant] = &[
     fault("lighting/punctual.wgsl", "(falloff * cone)", "falloff"),
     fault("lighting/punctual.wgsl", "light.w > 0.0", "light.w < 0.0"),
     fault("lighting/punctual.wgsl", "dot(toward, toward)", "length(toward)"),
-    fault("lighting/punctual.wgsl", "* light.intensity", ""),
+    fault("lighting/punctual.wgsl", "light.intensity * ", ""),
     fault("lighting/environment.wgsl", "* lobes.single_scatter", "* lobes.F0"),
     fault("lighting/environment.wgsl", "(lobes.diffuse + lobes.multiscatter)", "lobes.diffuse"),
     fault("lighting/environment.wgsl", "reflect(-lobes.v, lobes.n)", "lobes.n"),
@@ -160,8 +167,8 @@ impl Mutant {
         let sources = self.sources();
         let reached = TWINS.iter().filter(|twin| twin.compose(&sources).unwrap().files().contains(self.file));
         let rejects = |twin: &&Twin| {
-            let outcome = twin.run(gpu, &sources).unwrap_or_else(|error| panic!("{}: {error}", self.name()));
-            outcome.worst.error > twin.limit
+            let outcome = twin.measure(gpu, &sources).unwrap_or_else(|error| panic!("{}: {error}", self.name()));
+            outcome.worst().error > twin.limit
         };
         reached.into_iter().find(rejects).map(Twin::name)
     }

@@ -5,29 +5,38 @@
 //! (Mesa 22.3.6), times a margin for the slack that WGSL leaves other drivers in pow and log2.
 
 use super::grid::{ALPHAS, COSINES, UNIT, colors, directions, display_light, microfacets, product, spread};
-use super::harness::{Scale, Twin};
+use super::twin::{Scale, Twin};
+use crate::math::color::srgb_from_linear;
+use crate::math::spaces::octahedral_from_direction;
+use crate::reference::albedo::Dfg;
+use crate::reference::{brdf, color, lights};
+use crate::scene::ToneMap;
 use glam::{DMat4, DVec3, DVec4};
-use specula::math::color::srgb_from_linear;
-use specula::math::spaces::octahedral_from_direction;
-use specula::reference::albedo::Dfg;
-use specula::reference::{brdf, color, lights};
-use specula::scene::ToneMap;
 
 const EPS: f64 = f32::EPSILON as f64;
 
-pub(crate) const TWINS: &[Twin] = &[
+pub const TWINS: &[Twin] = &[
     Twin {
         file: "math/vectors.wgsl",
         function: "normalize_or",
         grid: vectors,
         truth: |x| {
             let (v, fallback) = (vec3(x, 0), vec3(x, 3));
-            // The stated threshold: a square below 1e-30 is no length in f32.
-            if v.length_squared() > 1e-30 { v.normalize().to_array().into() } else { fallback.to_array().into() }
+            // The stated thresholds.
+            let told = (1e-30..1e37).contains(&v.abs().max_element());
+            if told { v.normalize().to_array().into() } else { fallback.to_array().into() }
         },
         // Components of a unit vector: a small one carries the error of none but itself, yet the fallback is exact.
         scale: Scale::One,
         limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "math/half_range.wgsl",
+        function: "clamp_to_half",
+        grid: || product(&[&[0.0, 1e-40, 1.0, 65503.0, 65504.0, 65520.0, 1e30, f32::INFINITY], &[0.5], &[7e4]]),
+        truth: |x| x.iter().map(|x| x.min(65504.0)).collect(),
+        scale: Scale::One,
+        limit: 0.0,
     },
     Twin {
         file: "math/octahedral.wgsl",
@@ -198,7 +207,8 @@ fn vec3(x: &[f64], first: usize) -> DVec3 {
 
 /// Directions of many lengths, those included whose square underflows, and a fallback.
 fn vectors() -> Vec<Vec<f32>> {
-    let lengths = [0.0, 1e-25, 1e-16, 3e-15, 1e-6, 0.3, 1.0, 1.0 + 1e-6, 1e5, 1e18];
+    let lengths =
+        [0.0, 1e-40, 1e-32, 1e-28, 1e-20, 1e-16, 3e-15, 1e-6, 0.3, 1.0, 1.0 + 1e-6, 1e5, 1e18, 1e20, 1e36, 3e38];
     let all = directions(100).into_iter().flat_map(|d| lengths.map(|length| d * length));
     all.map(|v| [v.to_array(), [0.6, -0.48, 0.64]].concat()).collect()
 }
@@ -215,7 +225,7 @@ fn distances() -> Vec<Vec<f32>> {
     let ranges = [0.0, 0.02, 0.5, 1.0, 3.0, 10.0, 1000.0_f32];
     let inverse = ranges.map(|range| if range > 0.0 { (range * range).recip() } else { 0.0 });
     let relative = [0.0, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1.0, 1.001, 1.5, 30.0];
-    let absolute = [1e-6, 5e-3, 0.01, 0.02, 0.7, 20.0, 1e4_f32];
+    let absolute = [1e-20, 1e-6, 5e-3, 0.01, 0.02, 0.7, 20.0, 1e4, 1e10, 1e18, 1e20_f32];
     let of_range = ranges.iter().flat_map(|range| relative.iter().map(move |x| x * range));
     let squares: Vec<f32> = of_range.chain(absolute).map(|distance| distance * distance).collect();
     product(&[&inverse, &squares])

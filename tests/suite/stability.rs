@@ -1,0 +1,81 @@
+//! Numbers at the ends of what f32 can hold: the shaders stay finite, and keep the digits that docs/stability.md shows.
+
+use crate::support::gpu;
+use specula::gpu::formats::Precision;
+use specula::proof::fuzz::{FuzzOptions, fuzz};
+use specula::shader::ShaderSources;
+
+#[test]
+fn nothing_that_is_stored_is_nan_infinite_or_negative() {
+    let gpu = gpu(Precision::Half);
+    let options = FuzzOptions { evaluations: 1 << 20, seed: 1 };
+    let found = fuzz(&gpu, &ShaderSources::default(), options, |_| {}).unwrap();
+    for shader in &found {
+        println!("{}: {} evaluations, {} lit", shader.shader, shader.evaluations, shader.lit);
+        for fault in &shader.faults {
+            if let Some(first) = &fault.first {
+                println!("  {} {}: {first}", fault.count, fault.kind);
+            }
+        }
+        // Measured 0.4 and above; the search would find nothing in the dark.
+        assert!(shader.lit > shader.evaluations / 5, "{} is dark", shader.shader);
+    }
+    assert!(found.iter().map(|shader| shader.evaluations).sum::<u64>() >= options.evaluations);
+    assert!(found.iter().all(specula::proof::fuzz::ShaderFindings::is_clean), "on {}", gpu.description());
+}
+
+/// Guards whose removal the search has to notice: file, guard, what stands there without it.
+const GUARDS: &[(&str, &str, &str)] = &[
+    ("math/vectors.wgsl", "v / max(largest, LENGTH_MIN)", "v"),
+    ("math/vectors.wgsl", "largest > LENGTH_MIN && largest < LENGTH_MAX", "true"),
+    ("math/half_range.wgsl", "min(radiance, vec3f(HALF_MAX))", "radiance"),
+    ("light/attenuation.wgsl", "DISTANCE_SQUARED_MAX)", "distance_squared)"),
+    ("light/attenuation.wgsl", "DISTANCE_SQUARED_MIN: f32 = 1e-4", "DISTANCE_SQUARED_MIN: f32 = 0.0"),
+    ("lighting/punctual.wgsl", "(light.intensity * (falloff * cone))", "light.intensity * (falloff * cone)"),
+    ("lighting/lobes.wgsl", "NOV_MIN: f32 = 1e-4", "NOV_MIN: f32 = 0.0"),
+    ("lighting/lobes.wgsl", "ALPHA_MIN: f32 = 1e-3", "ALPHA_MIN: f32 = 0.0"),
+    (
+        "lighting/lobes.wgsl",
+        "inverseSqrt(max(dot(half_vector, half_vector), 1e-12))",
+        "inverseSqrt(dot(half_vector, half_vector))",
+    ),
+    ("lighting/lobes.wgsl", "saturate(dot(lobes.n, l))", "dot(lobes.n, l)"),
+    ("lighting/lobes.wgsl", "max(1.0 - E_avg, LOSS_MIN)", "(1.0 - E_avg)"),
+    (
+        "light/irradiance_sh.wgsl",
+        "max((linear + products + squares).xyz, vec3f(0.0))",
+        "(linear + products + squares).xyz",
+    ),
+    ("surface/surface.wgsl", "saturate(base_color.xyz)", "base_color.xyz"),
+    (
+        "surface/surface.wgsl",
+        "saturate(material.specular * specular_texel(v).w)",
+        "material.specular * specular_texel(v).w",
+    ),
+    ("surface/surface.wgsl", "saturate(1.0 + material.occlusion", "(1.0 + material.occlusion"),
+    (
+        "surface/surface.wgsl",
+        "saturate(material.metallic * metallic_roughness.z)",
+        "material.metallic * metallic_roughness.z",
+    ),
+    ("surface/alpha_blend.wgsl", "saturate(alpha)", "alpha"),
+];
+
+#[test]
+fn the_search_notices_every_guard_that_is_taken_away() {
+    let gpu = gpu(Precision::Half);
+    let mut unnoticed = Vec::new();
+    for (file, guard, without) in GUARDS {
+        let mut sources = ShaderSources::default();
+        let text = sources.get(file).unwrap().to_owned();
+        assert_eq!(text.matches(guard).count(), 1, "{file}: `{guard}` has to stand there once");
+        sources.insert(file, text.replacen(guard, without, 1));
+        let found = fuzz(&gpu, &sources, FuzzOptions { evaluations: 1 << 16, seed: 1 }, |_| {}).unwrap();
+        let counts: Vec<u64> = (0..3).map(|kind| found.iter().map(|shader| shader.faults[kind].count).sum()).collect();
+        println!("{file} without `{guard}`: NaN, infinite, negative {counts:?}");
+        if counts.iter().all(|count| *count == 0) {
+            unnoticed.push(format!("{file}: `{guard}`"));
+        }
+    }
+    assert!(unnoticed.is_empty(), "not noticed:\n{}", unnoticed.join("\n"));
+}
