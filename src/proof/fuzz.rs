@@ -90,7 +90,11 @@ pub fn fuzz(
     FUZZED.iter().map(|shader| search(gpu, sources, shader, each, options.seed, &mut done)).collect()
 }
 
-fn search(
+/// Searches one shader; [`fuzz`] for all of them.
+///
+/// # Errors
+/// As there.
+pub fn search(
     gpu: &Gpu,
     sources: &ShaderSources,
     shader: &'static FuzzedShader,

@@ -9,6 +9,8 @@ mod rows;
 mod signature;
 mod sources;
 mod stage;
+pub mod stress;
+mod truth;
 mod twin;
 
 pub use call::call;

@@ -5,6 +5,7 @@
 //! (Mesa 22.3.6), times a margin for the slack that WGSL leaves other drivers in pow and log2.
 
 use super::grid::{ALPHAS, COSINES, UNIT, colors, directions, display_light, microfacets, product, spread};
+use super::truth::{self, vec3};
 use super::twin::{Scale, Twin};
 use crate::math::color::srgb_from_linear;
 use crate::math::spaces::octahedral_from_direction;
@@ -20,12 +21,7 @@ pub const TWINS: &[Twin] = &[
         file: "math/vectors.wgsl",
         function: "normalize_or",
         grid: vectors,
-        truth: |x| {
-            let (v, fallback) = (vec3(x, 0), vec3(x, 3));
-            // The stated thresholds.
-            let told = (1e-30..1e37).contains(&v.abs().max_element());
-            if told { v.normalize().to_array().into() } else { fallback.to_array().into() }
-        },
+        truth: truth::normalize_or,
         // Components of a unit vector: a small one carries the error of none but itself, yet the fallback is exact.
         scale: Scale::One,
         limit: 8.0 * EPS,
@@ -50,7 +46,7 @@ pub const TWINS: &[Twin] = &[
     Twin {
         file: "brdf/d_ggx.wgsl",
         function: "D_GGX",
-        grid: microfacets,
+        grid: || microfacets(&ALPHAS),
         // The truth for vectors that are of unit length only to f32: their directions.
         truth: |x| vec![brdf::D_GGX(x[0], vec3(x, 1).normalize().dot(vec3(x, 4).normalize()))],
         scale: Scale::Result,
@@ -199,10 +195,6 @@ const fn tone_map(file: &'static str, truth: fn(&[f64]) -> Vec<f64>) -> Twin {
 
 fn display(curve: ToneMap, exposed: &[f64]) -> Vec<f64> {
     color::tone_map(curve, vec3(exposed, 0)).to_array().into()
-}
-
-fn vec3(x: &[f64], first: usize) -> DVec3 {
-    DVec3::from_slice(&x[first..])
 }
 
 /// Directions of many lengths, those included whose square underflows, and a fallback.

@@ -6,6 +6,7 @@ use super::signature::Signature;
 use super::stage;
 use crate::gpu::Gpu;
 use crate::shader::{Composed, ShaderSources, compose, create_module};
+use serde::Serialize;
 use std::fmt;
 
 /// One WGSL function, what it is compared with, and where.
@@ -57,7 +58,7 @@ pub struct Measurement {
 }
 
 /// The errors of many comparisons in short, in units of the scale.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
     pub comparisons: usize,
     /// The error that 99 of 100 comparisons do not exceed.
