@@ -7,6 +7,7 @@ mod error;
 mod output;
 mod progress;
 mod render;
+mod stability;
 mod stats;
 
 use clap::{Parser, Subcommand};
@@ -26,6 +27,8 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
+    /// Measure what f32 on this device makes of the shading model, and search it for faults.
+    Stability(stability::StabilityArgs),
 }
 
 /// Runs the program with the arguments of the process.
@@ -35,6 +38,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Bake(args) => bake::run(&args),
+        Command::Stability(args) => stability::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,9 +2,13 @@
 //! for faults. `specula stability` writes what is found down, and the tests hold it to limits.
 
 mod call;
+mod edge_cases;
 mod error;
+pub mod formulas;
 pub mod fuzz;
 mod grid;
+pub mod markdown;
+pub mod report;
 mod rows;
 mod signature;
 mod sources;
@@ -14,6 +18,7 @@ mod truth;
 mod twin;
 
 pub use call::call;
+pub use edge_cases::{EDGE_CASES, EdgeCase, EdgeReport};
 pub use error::ProofError;
 pub use rows::TWINS;
 pub use signature::functions_of;

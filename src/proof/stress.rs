@@ -45,6 +45,8 @@ pub struct FormReport {
 pub struct StressReport {
     pub title: &'static str,
     pub why: &'static str,
+    /// What the groups are ranges of.
+    pub axis: &'static str,
     pub groups: Vec<String>,
     pub forms: Vec<FormReport>,
 }
@@ -108,7 +110,7 @@ pub const STRESSES: &[Stress] = &[
         title: "Weight of F90 in Schlick's Fresnel",
         why: "v.h comes out above 1 by a rounding, and pow of a negative base is undefined in WGSL. Products of a \
               clamped number are defined, and cheaper.",
-        axis: Axis { name: "v.h", value: |x| x[0], edges: &[0.0, 0.5, 0.999, 1.0, 1.001] },
+        axis: Axis { name: "v.h", value: |x| x[0], edges: &[0.0, 0.5, 0.999, 1.0, 1.01] },
         used: used("brdf/f_schlick.wgsl", "F_Schlick_weight", fresnel_cosines, |x| {
             vec![brdf::F_Schlick(DVec3::ZERO, 1.0, x[0].clamp(0.0, 1.0)).x]
         }),
@@ -118,8 +120,8 @@ pub const STRESSES: &[Stress] = &[
         title: "Illuminance from a point light",
         why: "The square of a distance leaves f32 below 1e-19 and above 1e19 m, and a light inside a surface would \
               overflow the target: distances count as 1e-2 m at least, by the model (which a form without that floor \
-              does not follow), and their squares as 3e38 m2 at most. Intensities are 1 and 1e30 cd. Beyond 1e19 m an \
-              attenuation is below the smallest normal number, and a light of 1e30 cd is lost with it.",
+              does not follow), and their squares as 3e38 m2 at most. Intensities are 1 and 1e30 cd. Beyond 1e19 m the \
+              attenuation stays at 3e-39 or is flushed to zero: wrong by any factor, and dark at 1e30 cd.",
         axis: Axis {
             name: "metres",
             value: |x| x[1].abs().max(x[2].abs()).max(x[3].abs()),
@@ -169,12 +171,12 @@ impl Stress {
 
     /// Names of the groups: `1e-4 .. 1e-3`.
     pub fn group_names(&self) -> Vec<String> {
-        let edge = |x: f32| {
-            if x > 0.5 && x < 2.0 {
-                format!("{:.3}", x).trim_end_matches('0').trim_end_matches('.').to_owned()
-            } else {
-                format!("{x:.0e}")
-            }
+        // The last edge lies a little above what it is named after, so that its group includes that.
+        let edge = |x: f32| match x {
+            0.0 => "0".to_owned(),
+            _ if (x - 1.0).abs() < 2e-3 && x >= 1.0 => "1".to_owned(),
+            0.01..10.0 => format!("{x}"),
+            _ => format!("{x:.0e}"),
         };
         self.axis.edges.windows(2).map(|ends| format!("{} .. {}", edge(ends[0]), edge(ends[1]))).collect()
     }
@@ -190,7 +192,8 @@ impl Stress {
             Ok(FormReport { file, function, in_use: index == 0, groups: self.groups(&measured) })
         };
         let forms = self.forms().enumerate().map(form).collect::<Result<_, _>>()?;
-        Ok(StressReport { title: self.title, why: self.why, groups: self.group_names(), forms })
+        let Self { title, why, axis, .. } = *self;
+        Ok(StressReport { title, why, axis: axis.name, groups: self.group_names(), forms })
     }
 
     fn groups(&self, measured: &Measurement) -> Vec<Summary> {

@@ -32,6 +32,8 @@ pub(super) fn smaller_cosine(x: &[f32]) -> f32 {
 /// Arguments: v, fallback. The thresholds are those that the function states.
 pub(super) fn normalize_or(x: &[f64]) -> Vec<f64> {
     let (v, fallback) = (vec3(x, 0), vec3(x, 3));
-    let told = (1e-30..1e37).contains(&v.abs().max_element());
+    // The thresholds are floats of 32 bits.
+    let largest = v.abs().max_element();
+    let told = largest > f64::from(1e-30_f32) && largest < f64::from(1e37_f32);
     if told { v.normalize().to_array().into() } else { fallback.to_array().into() }
 }
