@@ -3,6 +3,7 @@
 use crate::capture::CaptureError;
 use crate::gpu::GpuError;
 use crate::import::ImportError;
+use crate::math::parameter::ParameterError;
 use crate::proof::ProofError;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,6 +15,8 @@ pub(super) enum CliError {
     Usage(String),
     #[error(transparent)]
     Import(#[from] ImportError),
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     #[error(transparent)]
     Capture(#[from] CaptureError),
     #[error("{0}; install one (scripts/setup.sh), or leave out --require-gpu to use the CPU reference renderer")]
@@ -33,7 +36,12 @@ impl CliError {
         ExitCode::from(match self {
             Self::CheckFailed(_) => 1,
             Self::NoAdapter(_) | Self::NeedsAdapter(_) => 3,
-            Self::Usage(_) | Self::Import(_) | Self::Capture(_) | Self::Proof(_) | Self::Write { .. } => 2,
+            Self::Usage(_)
+            | Self::Parameter(_)
+            | Self::Import(_)
+            | Self::Capture(_)
+            | Self::Proof(_)
+            | Self::Write { .. } => 2,
         })
     }
 }

@@ -4,6 +4,7 @@ mod bake;
 mod camera;
 mod environment;
 mod error;
+mod furnace;
 mod output;
 mod progress;
 mod render;
@@ -25,6 +26,8 @@ struct Cli {
 enum Command {
     /// Render a model to a picture.
     Render(Box<render::RenderArgs>),
+    /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
+    Furnace(Box<furnace::FurnaceArgs>),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
     /// Measure what f32 on this device makes of the shading model, and search it for faults.
@@ -37,6 +40,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        Command::Furnace(args) => furnace::run(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),
     };

@@ -106,7 +106,7 @@ struct DriverArgs {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Switch {
+pub(super) enum Switch {
     On,
     Off,
 }
@@ -255,14 +255,18 @@ fn load(args: &RenderArgs, progress: &dyn Progress) -> Result<Imported, CliError
         Ok(index) => SceneChoice::Index(index),
         Err(_) => SceneChoice::Name(scene.clone()),
     });
-    let options = ImportOptions { scene, progress, ..Default::default() };
-    if args.model != Path::new("-") {
-        return Ok(model_from_path(&args.model, &options)?);
+    load_model(&args.model, &ImportOptions { scene, progress, ..Default::default() })
+}
+
+/// The model of a file, or of stdin for `-`.
+pub(super) fn load_model(path: &Path, options: &ImportOptions<'_>) -> Result<Imported, CliError> {
+    if path != Path::new("-") {
+        return Ok(model_from_path(path, options)?);
     }
     let mut bytes = Vec::new();
     let read = std::io::stdin().lock().read_to_end(&mut bytes);
     read.map_err(|error| CliError::Usage(format!("stdin: cannot read the model: {error}")))?;
-    Ok(model_from_slice(&bytes, "stdin", None, &options)?)
+    Ok(model_from_slice(&bytes, "stdin", None, options)?)
 }
 
 impl RenderArgs {

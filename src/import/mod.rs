@@ -24,7 +24,7 @@ mod references;
 mod resources;
 mod tangents;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod textures;
 mod topology;
 mod vertices;

@@ -24,6 +24,12 @@ pub struct SurfaceMaterial {
     pub dielectric_f90: f64,
 }
 
+/// F0 and F90 of a dielectric interface to air (docs/model.md, "Material"): `ior` is 0 or from 1 up, `specular` in [0, 1].
+pub fn dielectric_reflectance(ior: f64, specular: f64, specular_color: DVec3) -> (DVec3, f64) {
+    let f0 = (specular_color * ((ior - 1.0) / (ior + 1.0)).powi(2)).clamp(DVec3::ZERO, DVec3::ONE);
+    (f0 * specular, specular)
+}
+
 /// A specular lobe's Fresnel factor and its multiple scattering.
 #[derive(Debug, Clone, Copy)]
 struct Interface {

@@ -1,5 +1,7 @@
 //! Gauss-Legendre quadrature: the rule behind every deterministic integral of the reference.
 
+pub mod adaptive;
+
 use std::f64::consts::PI;
 
 /// Nodes and weights of the n-point Gauss-Legendre rule on [0, 1].

@@ -1,6 +1,6 @@
 //! What a ray sees where it hits: interpolated attributes, textures, the shading normal.
 
-use super::bsdf::SurfaceMaterial;
+use super::bsdf::{SurfaceMaterial, dielectric_reflectance};
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
 use crate::scene::{AlphaMode, Material, Scene, TextureSlot, View};
@@ -157,8 +157,7 @@ impl Point<'_> {
         let ior = f64::from(material.ior);
         let weight = (f64::from(material.specular) * self.texture(TextureSlot::Specular).w).clamp(0.0, 1.0);
         let tint = material.specular_color.as_dvec3() * self.texture(TextureSlot::SpecularColor).xyz();
-        let f0 = (tint * ((ior - 1.0) / (ior + 1.0)).powi(2)).clamp(DVec3::ZERO, DVec3::ONE);
-        (f0 * weight, weight)
+        dielectric_reflectance(ior, weight, tint)
     }
 
     fn shading_normal(&self) -> DVec3 {

@@ -10,5 +10,5 @@ mod materials;
 mod mutants;
 mod nodes;
 mod resources;
-mod samples;
+pub(crate) mod samples;
 mod tangents;

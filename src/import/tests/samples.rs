@@ -18,7 +18,7 @@ fn folder() -> Option<PathBuf> {
     None
 }
 
-pub(super) fn model(name: &str) -> Option<PathBuf> {
+pub(crate) fn model(name: &str) -> Option<PathBuf> {
     Some(folder()?.join("models").join(name))
 }
 
