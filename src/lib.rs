@@ -13,6 +13,7 @@ pub mod passes;
 pub mod progress;
 #[cfg(feature = "cli")]
 pub mod proof;
+pub mod radiometry;
 pub mod reference;
 pub mod renderer;
 pub mod scene;

@@ -35,7 +35,7 @@ pub(super) struct CameraArgs {
 
 /// Three numbers separated by commas.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Point(DVec3);
+pub(super) struct Point(pub(super) DVec3);
 
 impl FromStr for Point {
     type Err = String;
@@ -84,7 +84,8 @@ impl FromStr for Orbit {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+/// A finite number, spaces around it allowed.
+pub(super) fn number(text: &str) -> Result<f64, String> {
     let text = text.trim();
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),

@@ -2,9 +2,11 @@
 
 mod bake;
 mod camera;
+mod color;
 mod environment;
 mod error;
 mod furnace;
+mod light;
 mod output;
 mod progress;
 mod render;

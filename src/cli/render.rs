@@ -1,8 +1,10 @@
 //! `specula render`: a model to a picture.
 
 use super::camera::CameraArgs;
+use super::color::srgb8_from_hex;
 use super::environment::EnvironmentArgs;
 use super::error::CliError;
+use super::light::LightArgs;
 use super::output::{self, Format};
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
@@ -38,6 +40,8 @@ pub(super) struct RenderArgs {
     size: UVec2,
     #[command(flatten)]
     environment: EnvironmentArgs,
+    #[command(flatten)]
+    lights: LightArgs,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -169,10 +173,8 @@ fn parse_background(text: &str) -> Result<Background, String> {
         "transparent" => Ok(Background::Transparent),
         "env" => Ok(Background::Environment),
         color => {
-            let digits = color.strip_prefix('#').filter(|digits| digits.len() == 6);
-            let code = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-            let [_, r, g, b] = code.ok_or("expected transparent, env, or a colour #rrggbb")?.to_be_bytes();
-            Ok(Background::Color(Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0))
+            let channels = srgb8_from_hex(color).ok_or("expected transparent, env, or a colour #rrggbb")?;
+            Ok(Background::Color(Vec3::from(channels.map(f32::from)) / 255.0))
         }
     }
 }
@@ -196,12 +198,17 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if args.json && args.output == Path::new("-") {
         return Err(CliError::Usage("--json and `-o -` both want stdout; use --stats FILE.json".into()));
     }
+    let lights = args.lights.parse()?;
     let progress = StderrProgress::new(args.quiet);
     let mut watch = Stopwatch::default();
 
     let Imported { mut scene, warnings, .. } = watch.time("decode", || load(args, &progress))?;
     let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
     scene.environment = watch.time("environment decode", || args.environment.load())?;
+    for light in lights {
+        warnings.extend(light.note);
+        scene.add_light(light.light, light.position_in_world, light.direction_in_world);
+    }
     let view = args.view(&scene)?;
 
     let gpu = match args.driver.renderer {

@@ -1,5 +1,6 @@
-//! Conventions shared by every layer: directions, projections, colour. No scene, no GPU.
+//! Shared by every layer: directions, projections, colour, quadrature. No scene, no GPU.
 
 pub mod color;
 pub mod parameter;
+pub mod quadrature;
 pub mod spaces;

@@ -1,22 +1,28 @@
 //! Every formula of the light and material model: where it is, what checks it, and how exact it is. The table behind
 //! docs/brdf.md.
 
+mod table;
+
+pub use table::FORMULAS;
+
 use super::markdown::{code, error, table};
 use super::report::{FunctionReport, StabilityReport};
+use super::stress::Stress;
 use std::fmt::Write;
 
 /// One formula.
 #[derive(Debug, Clone, Copy)]
 pub struct Formula {
-    pub group: &'static str,
     pub name: &'static str,
     pub equation: &'static str,
     /// In float64.
-    pub rust: Option<Place>,
-    /// In a shader.
+    pub rust: Place,
+    /// In a shader, where one needs it.
     pub wgsl: Option<Place>,
     /// Tests of what must hold whatever the algebra.
     pub laws: &'static [Place],
+    /// What measures it where it has no twin of its own.
+    pub stress: Option<&'static Stress>,
 }
 
 /// A function in a file, from the root of the repository.
@@ -26,31 +32,7 @@ pub struct Place {
     pub function: &'static str,
 }
 
-const fn at(file: &'static str, function: &'static str) -> Place {
-    Place { file, function }
-}
-
-const BRDF: &str = "src/reference/brdf.rs";
-const ALBEDO: &str = "src/reference/albedo.rs";
-const BSDF: &str = "src/reference/bsdf.rs";
-const LIGHTS: &str = "src/reference/lights.rs";
-const LOBES: &str = "shaders/lighting/lobes.wgsl";
-const FRAMES: &str = "tests/suite/frames.rs";
-const PLANE: &str = "tests/suite/lit_plane.rs";
-
-const fn formula(group: &'static str, name: &'static str, equation: &'static str) -> Formula {
-    Formula { group, name, equation, rust: None, wgsl: None, laws: &[] }
-}
-
-/// All of them, group by group.
-pub const FORMULAS: &[Formula] = &[Formula {
-    rust: Some(at("src/reference/integrator.rs", "RADIANCE")),
-    wgsl: Some(at("shaders/lighting/punctual.wgsl", "punctual_radiance")),
-    laws: &[],
-    ..formula("Light", "Reflectance equation", "L_o(v) = integral of f(l, v) L_i(l) n.l dl")
-}];
-
-/// The formulas of a group stand together; a table each.
+/// `docs/brdf.md`: a table for each group.
 pub fn document(report: &StabilityReport) -> String {
     let mut text = String::from(
         "# Formulas\n\n\
@@ -59,12 +41,13 @@ pub fn document(report: &StabilityReport) -> String {
          `src/proof/rows.rs`; the scale is given where it is not the result).\n\n",
     );
     let _ = writeln!(text, "Adapter: {}\n", report.adapter);
-    for formulas in FORMULAS.chunk_by(|a, b| a.group == b.group) {
-        let _ = writeln!(text, "## {}\n", formulas[0].group);
+    for (group, formulas) in FORMULAS {
+        let _ = writeln!(text, "## {group}\n");
         let head = ["formula", "equation", "Rust", "WGSL", "law checks", "worst error"].map(str::to_owned).to_vec();
         let rows = formulas.iter().map(|formula| row(formula, report));
         table(&mut text, &std::iter::once(head).chain(rows).collect::<Vec<_>>());
     }
+    text.truncate(text.trim_end().len() + 1);
     text
 }
 
@@ -76,15 +59,25 @@ fn row(formula: &Formula, report: &StabilityReport) -> Vec<String> {
     vec![
         formula.name.to_owned(),
         code(formula.equation),
-        places(formula.rust.as_slice()),
+        place(&formula.rust),
         places(formula.wgsl.as_slice()),
         places(formula.laws),
-        formula.wgsl.and_then(|place| measured(place, report)).map_or_else(|| "-".to_owned(), figure),
+        worst(formula, report),
     ]
 }
 
-/// The row of a WGSL function in the report: from the twins, or from a stress test of an entry to it.
-fn measured(place: Place, report: &StabilityReport) -> Option<&FunctionReport> {
+/// Of the WGSL function by its twin, or of its 99 % in each group of the stress test.
+fn worst(formula: &Formula, report: &StabilityReport) -> String {
+    let stress = formula.stress.and_then(|stress| report.stresses.iter().find(|found| found.title == stress.title));
+    if let Some(stress) = stress {
+        let p99 = stress.forms.iter().take(1).flat_map(|form| form.groups.iter().map(|group| error(group.p99)));
+        return format!("p99 {} by decade of {}", p99.collect::<Vec<_>>().join(", "), stress.axis);
+    }
+    formula.wgsl.and_then(|place| twin(place, report)).map_or_else(|| "-".to_owned(), figure)
+}
+
+/// The row of a WGSL function in the report.
+fn twin(place: Place, report: &StabilityReport) -> Option<&FunctionReport> {
     let file = place.file.strip_prefix("shaders/")?;
     report.functions.iter().find(|row| row.file == file && row.function == place.function)
 }

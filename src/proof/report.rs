@@ -86,8 +86,10 @@ impl StabilityReport {
         let edges = self.edge_cases.iter().filter(|case| case.error > 1e-6);
         let edges = edges.map(|case| format!("{}: {} instead of {}", case.title, case.used, case.expected));
         let faults = self.fuzz.shaders.iter().flat_map(|found| {
-            let faults = found.faults.iter().filter_map(move |fault| Some((fault, fault.first.as_ref()?)));
-            faults.map(|(fault, first)| format!("{}: {} {}: {first}", found.shader, fault.count, fault.kind))
+            found.faults.iter().filter(|fault| fault.count > 0).map(move |fault| {
+                let first = fault.first.as_ref().map(ToString::to_string).unwrap_or_default();
+                format!("{}: {} {}: {first}", found.shader, fault.count, fault.kind)
+            })
         });
         functions.chain(forms).chain(edges).chain(faults).collect()
     }

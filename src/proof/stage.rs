@@ -90,8 +90,8 @@ pub(super) fn features(scene: SceneFeatures, material: Material) -> ForwardFeatu
 }
 
 /// [`features`] with the normal of the vertices.
-pub(super) fn features_without_normal_map(scene: SceneFeatures, material: Material) -> ForwardFeatures {
-    of_material(scene, &material)
+pub(super) fn features_without_normal_map(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
+    of_material(scene, material)
 }
 
 fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {

@@ -137,8 +137,8 @@ impl<'a> Bsdf<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quadrature::GaussLegendre;
     use super::*;
+    use crate::math::quadrature::GaussLegendre;
     use std::f64::consts::{PI, TAU};
 
     fn white() -> SurfaceMaterial {

@@ -13,7 +13,6 @@ pub mod integrator;
 pub mod laws;
 pub mod lights;
 pub mod microfacet;
-pub mod quadrature;
 mod render;
 pub mod sampling;
 mod strokes;
@@ -22,4 +21,5 @@ pub mod surface;
 mod tests;
 pub mod texture;
 
+pub use crate::math::quadrature;
 pub use render::{ReferenceOptions, render};

@@ -11,6 +11,7 @@ mod light;
 mod material;
 mod mesh;
 pub mod shapes;
+mod spot_cone;
 mod view;
 
 pub use camera::{Camera, Projection};
@@ -19,6 +20,7 @@ pub use image::{Image, Pixels, RadianceImage, Sampler, Texture, Wrap};
 pub use light::{Light, LightInWorld, LightKind};
 pub use material::{AlphaMode, Material, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};
+pub use spot_cone::SpotCone;
 pub use view::{Background, ToneMap, View};
 
 use glam::{DMat4, DVec3};

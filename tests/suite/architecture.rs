@@ -15,6 +15,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("progress", &[]),
     ("scene", &["math"]),
     ("import", &["math", "progress", "scene"]),
+    ("radiometry", &["math"]),
     // The float64 truth, and what is made from it. The renderer reads the baked tables and never the truth.
     ("reference", &["math", "progress", "scene"]),
     ("bake", &["math", "progress", "reference", "scene"]),
@@ -48,6 +49,7 @@ const EVERYTHING: &[&str] = &[
     "passes",
     "progress",
     "proof",
+    "radiometry",
     "reference",
     "renderer",
     "scene",

@@ -5,6 +5,7 @@ mod architecture;
 mod cli;
 mod frames;
 mod goldens;
+mod lights;
 mod lit_plane;
 mod mutants;
 mod shaders;

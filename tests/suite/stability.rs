@@ -2,7 +2,11 @@
 
 use crate::support::gpu;
 use specula::gpu::formats::Precision;
+use specula::progress::Silent;
+use specula::proof::formulas::{self, FORMULAS, Place};
 use specula::proof::fuzz::{FUZZED, FuzzOptions, ShaderFindings, fuzz, search};
+use specula::proof::markdown::{self, structure};
+use specula::proof::report::StabilityReport;
 use specula::proof::stress::{D_CHORD, SPECULAR_LOBE};
 use specula::shader::ShaderSources;
 
@@ -95,4 +99,49 @@ fn the_specular_lobe_keeps_its_digits() {
     for naive in &report.forms[1..] {
         assert!(naive.groups[0].worst > 1e-4, "{} is no worse than the form in use", naive.function);
     }
+}
+
+/// A small report of this device: structure does not depend on how far the search goes.
+fn report() -> StabilityReport {
+    let options = FuzzOptions { evaluations: 1 << 12, seed: 1 };
+    StabilityReport::measure(&gpu(Precision::Half), options, &Silent).unwrap()
+}
+
+#[test]
+fn the_committed_documents_have_a_row_for_everything() {
+    let report = report();
+    assert_eq!(report.offences(), Vec::<String>::new());
+    let documents =
+        [("docs/stability.md", markdown::stability(&report)), ("docs/brdf.md", formulas::document(&report))];
+    for (path, text) in documents {
+        let committed = std::fs::read_to_string(path).unwrap();
+        assert!(text.lines().count() > 50, "{path} is empty");
+        assert_eq!(structure(&committed), structure(&text), "{path}: run `specula stability --write docs`");
+    }
+}
+
+#[test]
+fn every_place_in_the_table_of_formulas_exists() {
+    let formulas = FORMULAS.iter().flat_map(|(_, formulas)| formulas.iter());
+    let places =
+        formulas.flat_map(|formula| [formula.rust].into_iter().chain(formula.wgsl).chain(formula.laws.iter().copied()));
+    let missing = |place: &Place| {
+        let text = std::fs::read_to_string(place.file).unwrap_or_default();
+        let declared = |end: char| text.contains(&format!("fn {}{end}", place.function));
+        !declared('(') && !declared('<')
+    };
+    let missing: Vec<String> =
+        places.filter(missing).map(|place| format!("{} in {}", place.function, place.file)).collect();
+    assert_eq!(missing, Vec::<String>::new());
+}
+
+#[test]
+fn an_offence_is_found_in_a_report() {
+    let mut report = report();
+    report.functions[0].errors.worst = 1.0;
+    report.edge_cases[0].error = f64::INFINITY;
+    report.fuzz.shaders[0].faults[0].count = 1;
+    report.stresses[0].forms[0].groups[0].not_finite = 1;
+    let offences = report.offences();
+    assert_eq!(offences.len(), 4, "{offences:?}");
 }

@@ -38,7 +38,7 @@ pub const FUZZED: &[FuzzedShader] = &[
         name: "vertex normals, single scattering",
         features: || ForwardFeatures {
             energy_compensation: false,
-            ..stage::features_without_normal_map(BY_LIGHTS, Material::default())
+            ..stage::features_without_normal_map(BY_LIGHTS, &Material::default())
         },
         environment_nits: 0.0,
     },

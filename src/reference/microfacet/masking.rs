@@ -47,7 +47,7 @@ pub enum Geometry {
     /// Schlick's form with k = alpha / 2, which meets Smith's at alpha = 1.
     SchlickHalfAlpha,
     /// Schlick's form with k = (r + 1)^2 / 8 of the perceptual roughness r (Karis 2013, equation 4): made to look good
-    /// under punctual lights, and so dark at low roughness.
+    /// under punctual lights, and so dark at low perceptual roughness.
     SchlickKaris,
     /// Schlick's form with k = ((r + 1) / 2)^2, as the lecture prints it. That is Karis' remapped alpha, which he halves
     /// again to get k: the lecture's k is twice as large, and hides most of the light.
