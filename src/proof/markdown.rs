@@ -49,6 +49,8 @@ pub(super) fn error(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
         _ if value.is_infinite() => "inf".to_owned(),
+        0.1..10.0 => format!("{value:.1}"),
+        10.0..1e4 => format!("{value:.0}"),
         _ => format!("{value:.1e}"),
     }
 }

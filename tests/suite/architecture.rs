@@ -13,9 +13,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     // Plain data.
     ("math", &[]),
     ("progress", &[]),
-    ("scene", &["math"]),
-    ("import", &["math", "progress", "scene"]),
+    // Quantities of light, with units in their types.
     ("radiometry", &["math"]),
+    ("scene", &["math", "radiometry"]),
+    ("import", &["math", "progress", "scene"]),
     // The float64 truth, and what is made from it. The renderer reads the baked tables and never the truth.
     ("reference", &["math", "progress", "scene"]),
     ("bake", &["math", "progress", "reference", "scene"]),
