@@ -9,6 +9,7 @@ macro_rules! embedded {
     };
 }
 
+#[cfg(feature = "cli")]
 pub(crate) use embedded;
 
 /// Every file under `shaders/` that a frame can be made of: its path there, and its text.
