@@ -11,6 +11,8 @@ pub mod import;
 pub mod math;
 pub mod passes;
 pub mod progress;
+#[cfg(feature = "cli")]
+pub mod proof;
 pub mod radiometry;
 pub mod reference;
 pub mod renderer;

@@ -66,19 +66,9 @@ impl Renderer {
 
     /// A renderer some of whose shader files are replaced.
     pub fn with_shaders(device: &wgpu::Device, queue: &wgpu::Queue, sources: ShaderSources) -> Self {
-        let clamp_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("clamp"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         Self {
             sources,
-            shared: SharedTextures {
-                dfg: table(&dfg::TABLE).upload(device, queue),
-                fresnel_tail: table(&fresnel_tail::TABLE).upload(device, queue),
-                clamp_sampler,
-            },
+            shared: shared_textures(device, queue),
             forward: ForwardPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
@@ -184,9 +174,25 @@ fn check_size(device: &wgpu::Device, view: &View) -> Result<(), RenderError> {
     if fits { Ok(()) } else { Err(RenderError::Size { width, height, allowed }) }
 }
 
-fn table(embedded: &EmbeddedTable) -> Table {
+/// An embedded table, ready for upload.
+pub(crate) fn table(embedded: &EmbeddedTable) -> Table {
     let EmbeddedTable { file: label, width, height, channels, bytes, .. } = *embedded;
     Table { label, width: width as u32, height: height as u32, channels, bytes }
+}
+
+/// What every lit scene reads: the split-sum table, its companion, and the sampler for tables.
+pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> SharedTextures {
+    let clamp_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("clamp"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    });
+    SharedTextures {
+        dfg: table(&dfg::TABLE).upload(device, queue),
+        fresnel_tail: table(&fresnel_tail::TABLE).upload(device, queue),
+        clamp_sampler,
+    }
 }
 
 fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {

@@ -11,7 +11,8 @@ fn F_conductor(n: vec3f, k: vec3f, VoH: f32) -> vec3f {
     // 2 a cos, where a^2 = (ab + t) / 2; a difference of nearly equal numbers where k is large, so it takes the other root.
     let a2 = select(2.0 * n2 * k2 / max(ab - t, vec3f(1e-20)), 0.5 * (ab + t), t > vec3f(0.0));
     let a_cos = 2.0 * sqrt(a2) * VoH;
-    let Rs = (ab + cos2 - a_cos) / (ab + cos2 + a_cos);
+    // Nothing is left of either side where the metal is a vacuum, seen edge on.
+    let Rs = (ab + cos2 - a_cos) / max(ab + cos2 + a_cos, vec3f(1e-20));
     let p = cos2 * ab + sin2 * sin2;
     let q = a_cos * sin2;
     return 0.5 * Rs * (1.0 + (p - q) / (p + q));

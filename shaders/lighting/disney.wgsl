@@ -1,5 +1,5 @@
 #import "brdf/d_gtr1.wgsl"
-#import "brdf/d_gtr2_anisotropic.wgsl"
+#import "brdf/d_ggx_anisotropic.wgsl"
 #import "brdf/f_schlick.wgsl"
 #import "brdf/fd_burley.wgsl"
 #import "brdf/fd_subsurface.wgsl"
@@ -78,7 +78,7 @@ fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let LoH = saturate(dot(l, h));
 
     // Masking of the light is G1(NoL) / NoL, and the cosine of the light cancels against it.
-    let D = D_GTR2_anisotropic(lobes.alpha_x, lobes.alpha_y, lobes.t, lobes.b, lobes.n, h);
+    let D = D_GGX_anisotropic(lobes.alpha_x, lobes.alpha_y, lobes.t, lobes.b, lobes.n, h);
     let specular = F_Schlick(lobes.F0, 1.0, LoH) * (D * lobes.seen * G1_SmithGGX(lobes.masking, NoL));
 
     let coat_F = mix(CLEARCOAT_F0, 1.0, F_Schlick_weight(LoH));

@@ -23,11 +23,11 @@ fn reflectance(fresnel: Fresnel, VoH: f32) -> vec3f {
 // What the lobe returns of uniform light in one bounce; `table` is the split-sum pair at `cos_theta`.
 fn single_scatter(fresnel: Fresnel, table: vec4f, perceptual_roughness: f32, cos_theta: f32) -> vec3f {
     let tail = fresnel_tail(perceptual_roughness, cos_theta);
-    let metal = fresnel.metal_F0 * table.x + table.y - material.lazanyi_a * tail;
+    let metal = max(fresnel.metal_F0 * table.x + table.y - material.lazanyi_a * tail, vec3f(0.0));
     return mix(fresnel.F0 * table.x + fresnel.F90 * table.y, metal, fresnel.metallic);
 }
 
 // Cosine average of the metal's curve.
 fn metal_average(surface: Surface) -> vec3f {
-    return F_Schlick_average(surface.base_color, 1.0) - material.lazanyi_a * (1.0 / 126.0);
+    return saturate(F_Schlick_average(surface.base_color, 1.0) - material.lazanyi_a * (1.0 / 126.0));
 }

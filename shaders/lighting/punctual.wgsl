@@ -1,7 +1,6 @@
 #import "light/attenuation.wgsl"
 #import "math/vectors.wgsl"
-
-@group(0) @binding(4) var<storage, read> lights: array<Light>;
+#import "lighting/lights.wgsl"
 
 // Radiance toward the viewer from all point, spot and directional lights, unshadowed.
 fn punctual_radiance(lobes: Lobes, position: vec3f) -> vec3f {
@@ -13,7 +12,8 @@ fn punctual_radiance(lobes: Lobes, position: vec3f) -> vec3f {
         let l = normalize_or(toward, lobes.n);
         let falloff = select(1.0, distance_attenuation(light.inverse_range_squared, dot(toward, toward)), light.w > 0.0);
         let cone = spot_attenuation(light.spot_scale, light.spot_offset, -dot(light.direction, l));
-        radiance += evaluate_lobes(lobes, l) * light.intensity * (falloff * cone);
+        // What arrives first: a lobe times a strong light may be infinite where the light does not reach.
+        radiance += evaluate_lobes(lobes, l) * (light.intensity * (falloff * cone));
     }
     return radiance;
 }

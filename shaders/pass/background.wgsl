@@ -1,5 +1,6 @@
 #import <types>
 #import "math/constants.wgsl"
+#import "math/half_range.wgsl"
 #import "math/vectors.wgsl"
 #import "pass/fullscreen.wgsl"
 
@@ -25,5 +26,5 @@ fn fragment(in: BackgroundOut) -> @location(0) vec4f {
     let d = normalize_or(in.direction, vec3f(1.0, 0.0, 0.0));
     let uv = vec2f(0.5 + atan2(d.z, d.x) * (0.5 * INV_PI), acos(clamp(d.y, -1.0, 1.0)) * INV_PI);
     let radiance = textureSampleLevel(panorama, panorama_sampler, uv, 0.0).xyz * background.radiance_scale;
-    return vec4f(min(radiance, vec3f(65504.0)), 1.0);
+    return vec4f(clamp_to_half(radiance), 1.0);
 }

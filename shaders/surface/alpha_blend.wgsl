@@ -1,3 +1,4 @@
 fn premultiply(radiance: vec3f, alpha: f32) -> vec4f {
-    return vec4f(radiance * alpha, alpha);
+    let coverage = saturate(alpha);
+    return vec4f(radiance * coverage, coverage);
 }

@@ -33,14 +33,15 @@ fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surfa
     surface.tangents = read_tangents(v, n);
     surface.v = toward_viewer;
     surface.t = shading_tangent(v, surface.n);
+    // Vertex colours are floats and may be anything.
     surface.base_color = saturate(base_color.xyz);
     surface.alpha = base_color.w;
     surface.metallic = saturate(material.metallic * metallic_roughness.z);
     surface.perceptual_roughness = saturate(material.perceptual_roughness * metallic_roughness.y);
     surface.dielectric_F0 = material.dielectric_F0;
-    surface.specular = material.specular * specular_texel(v).w;
+    surface.specular = saturate(material.specular * specular_texel(v).w);
     surface.specular_color = material.specular_color * specular_color_texel(v).xyz;
-    surface.occlusion = 1.0 + material.occlusion_strength * (occlusion_texel(v).x - 1.0);
+    surface.occlusion = saturate(1.0 + material.occlusion_strength * (occlusion_texel(v).x - 1.0));
     surface.emissive = material.emissive * emissive_texel(v).xyz;
     return surface;
 }

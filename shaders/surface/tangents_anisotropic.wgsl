@@ -1,3 +1,4 @@
+#import "math/orthonormal.wgsl"
 #import "math/vectors.wgsl"
 
 // The frame in which microfacets are spread: t along the wide direction, b across it, both at right angles to n.
@@ -14,8 +15,8 @@ fn read_tangents(v: VertexOut, n: vec3f) -> Tangents {
     let turn = mat2x2f(material.anisotropy.y, material.anisotropy.z, -material.anisotropy.z, material.anisotropy.y);
     let direction = turn * (texel.xy * 2.0 - 1.0);
     let tangent = v.tangent.xyz;
-    let along = normalize_or(tangent - n * dot(n, tangent), vec3f(0.0));
+    let along = normalize_or(tangent - n * dot(n, tangent), any_orthonormal(n));
     let across = cross(n, along) * v.tangent.w;
     let t = normalize_or(along * direction.x + across * direction.y, along);
-    return Tangents(t, material.anisotropy.x * texel.z, cross(n, t));
+    return Tangents(t, saturate(material.anisotropy.x * texel.z), cross(n, t));
 }

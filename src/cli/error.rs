@@ -4,6 +4,7 @@ use crate::capture::CaptureError;
 use crate::gpu::GpuError;
 use crate::import::ImportError;
 use crate::math::parameter::ParameterError;
+use crate::proof::ProofError;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -20,6 +21,10 @@ pub(super) enum CliError {
     Capture(#[from] CaptureError),
     #[error("{0}; install one (scripts/setup.sh), or leave out --require-gpu to use the CPU reference renderer")]
     NoAdapter(GpuError),
+    #[error("{0}; install one (scripts/setup.sh): this runs on a GPU or on a software driver")]
+    NeedsAdapter(GpuError),
+    #[error(transparent)]
+    Proof(#[from] ProofError),
     #[error("{path}: cannot write: {reason}", path = .path.display())]
     Write { path: PathBuf, reason: String },
     #[error("{0}")]
@@ -30,8 +35,13 @@ impl CliError {
     pub(super) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::CheckFailed(_) => 1,
-            Self::NoAdapter(_) => 3,
-            Self::Usage(_) | Self::Parameter(_) | Self::Import(_) | Self::Capture(_) | Self::Write { .. } => 2,
+            Self::NoAdapter(_) | Self::NeedsAdapter(_) => 3,
+            Self::Usage(_)
+            | Self::Parameter(_)
+            | Self::Import(_)
+            | Self::Capture(_)
+            | Self::Proof(_)
+            | Self::Write { .. } => 2,
         })
     }
 }

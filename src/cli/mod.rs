@@ -11,6 +11,7 @@ mod output;
 mod overrides;
 mod progress;
 mod render;
+mod stability;
 mod stats;
 
 use clap::{Parser, Subcommand};
@@ -32,6 +33,8 @@ enum Command {
     Furnace(Box<furnace::FurnaceArgs>),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
+    /// Measure what f32 on this device makes of the shading model, and search it for faults.
+    Stability(stability::StabilityArgs),
 }
 
 /// Runs the program with the arguments of the process.
@@ -42,6 +45,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Furnace(args) => furnace::run(&args),
         Command::Bake(args) => bake::run(&args),
+        Command::Stability(args) => stability::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

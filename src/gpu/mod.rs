@@ -6,4 +6,4 @@ pub mod formats;
 mod readback;
 
 pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};
-pub use readback::{Readback, read_texture};
+pub use readback::{Readback, read_buffer, read_texture};

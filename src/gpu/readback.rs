@@ -1,8 +1,8 @@
-//! Copying a texture back to memory.
+//! Copying textures and buffers back to memory.
 
 use super::device::{Gpu, GpuError};
 
-/// A texture on its way to memory.
+/// A texture or a buffer on its way to memory.
 #[derive(Debug)]
 pub struct Readback {
     buffer: wgpu::Buffer,
@@ -33,8 +33,21 @@ pub fn read_texture(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, t
     Readback { buffer, row_bytes, padded_row_bytes, rows: size.height as usize }
 }
 
+/// Records the copy of `source`, whose size is a multiple of 4; the bytes are there after the encoder was submitted.
+pub fn read_buffer(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, source: &wgpu::Buffer) -> Readback {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: source.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    encoder.copy_buffer_to_buffer(source, 0, &buffer, 0, source.size());
+    let bytes = source.size() as usize;
+    Readback { buffer, row_bytes: bytes, padded_row_bytes: bytes, rows: 1 }
+}
+
 impl Readback {
-    /// Waits for the copy and returns the texels, row-major without padding. Fails when the device reported an error.
+    /// Waits for the copy and returns the bytes, row-major without padding. Fails when the device reported an error.
     pub fn wait(self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
         let (sender, receiver) = std::sync::mpsc::channel();
         self.buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
@@ -43,12 +56,12 @@ impl Readback {
         });
         gpu.device
             .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|error| GpuError::Failed(format!("waiting for the frame: {error}")))?;
+            .map_err(|error| GpuError::Failed(format!("waiting for the device: {error}")))?;
         gpu.check()?;
         match receiver.try_recv() {
             Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(GpuError::Failed(format!("mapping the frame: {error}"))),
-            Err(_) => return Err(GpuError::Failed("mapping the frame: no answer".into())),
+            Ok(Err(error)) => return Err(GpuError::Failed(format!("mapping the result: {error}"))),
+            Err(_) => return Err(GpuError::Failed("mapping the result: no answer".into())),
         }
         let mapped = self.buffer.slice(..).get_mapped_range().map_err(|error| GpuError::Failed(error.to_string()))?;
         let mut bytes = Vec::with_capacity(self.row_bytes * self.rows);

@@ -11,12 +11,12 @@ use crate::frame::{Drawables, PlacedInstance};
 use crate::gpu::bindings::{self, frame_layout};
 use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
 use crate::shader::{SceneFeatures, types};
-use environment::GpuEnvironment;
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
 
+pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
 pub use tables::Table;
 

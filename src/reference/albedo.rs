@@ -3,7 +3,7 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use super::brdf::{D_GGX, V_SmithGGXCorrelated, alpha_from_perceptual_roughness};
-use super::quadrature::GaussLegendre;
+use crate::math::quadrature::GaussLegendre;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::sync::OnceLock;

@@ -86,8 +86,8 @@ fn coupled_cosine_lobe(E_v: f64, E_l: f64, E_avg: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quadrature::GaussLegendre;
     use super::*;
+    use crate::math::quadrature::GaussLegendre;
 
     /// int over the hemisphere of facets, with tan(theta) = alpha tan(psi): `f(NoH, sin)` averaged over azimuth.
     fn over_facets(alpha: f64, mut f: impl FnMut(f64, f64) -> f64) -> f64 {

@@ -244,8 +244,8 @@ fn metal_average(material: &SurfaceMaterial) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quadrature::GaussLegendre;
     use super::*;
+    use crate::math::quadrature::GaussLegendre;
     use std::f64::consts::{PI, TAU};
 
     fn white() -> SurfaceMaterial {

@@ -11,6 +11,8 @@ pub mod albedo;
 pub mod bsdf;
 pub mod gltf;
 
+/// Generalized Trowbridge-Reitz with exponent 2 is GGX (Burley 2012, appendix B).
+pub use super::microfacet::distribution::D_GGX_anisotropic as D_GTR2_anisotropic;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -18,13 +20,6 @@ use std::f64::consts::PI;
 pub fn D_GTR1(alpha: f64, NoH: f64) -> f64 {
     let a2 = alpha * alpha;
     (a2 - 1.0) / (PI * a2.ln() * (1.0 + (a2 - 1.0) * NoH * NoH))
-}
-
-/// Generalized Trowbridge-Reitz distribution with exponent 2, anisotropic: GGX with two alphas, 1/sr (Burley 2012,
-/// appendix B). `ToH` and `BoH` are the half vector's cosines with tangent and bitangent.
-pub fn D_GTR2_anisotropic(alpha_x: f64, alpha_y: f64, ToH: f64, BoH: f64, NoH: f64) -> f64 {
-    let ellipsoid = (ToH / alpha_x).powi(2) + (BoH / alpha_y).powi(2) + NoH * NoH;
-    1.0 / (PI * alpha_x * alpha_y * ellipsoid * ellipsoid)
 }
 
 /// Smith masking of one direction for GGX, in [0, 1] (Walter et al. 2007, equation 34). `NoX` in [0, 1].

@@ -13,7 +13,7 @@ pub use facets::{FacetReport, check_facets};
 pub use pairs::{PairReport, check_pairs};
 
 use super::microfacet::Distribution;
-use super::quadrature::adaptive::Accuracy;
+use crate::math::quadrature::adaptive::Accuracy;
 
 /// How exactly the laws' integrals are evaluated when nothing else is asked for. The table of directional albedo that
 /// the standard material reads is good to 3e-4, so that finer would measure its interpolation.

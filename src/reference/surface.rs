@@ -3,6 +3,7 @@
 use super::bsdf::{Anisotropy, SurfaceMaterial, dielectric_reflectance};
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
+use crate::math::spaces::orthonormal_basis;
 use crate::scene::{AlphaMode, Disney, Material, Scene, TextureSlot, View};
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 
@@ -207,7 +208,7 @@ impl Point<'_> {
         }
         let (tangent, sign) = self.tangent()?;
         let normal = self.front_normal();
-        let along = (tangent - normal * normal.dot(tangent)).try_normalize()?;
+        let along = (tangent - normal * normal.dot(tangent)).normalize_or(orthonormal_basis(normal).0);
         let across = normal.cross(along) * sign;
         let (direction, strength) = match material.texture(TextureSlot::Anisotropy) {
             Some(_) => {

@@ -20,7 +20,9 @@ pub use features::{
 pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, disney_binding, material_texture_binding,
 };
-pub use modules::{DisplayFeatures, background_module, display_module, forward_module};
+pub use modules::{DisplayFeatures, background_module, display_module, forward_module, forward_slots};
+#[cfg(feature = "cli")]
+pub(crate) use sources::embedded;
 pub use sources::{SOURCES, ShaderSources};
 
 /// Makes a wgpu module of composed WGSL, with errors at the original file and line.

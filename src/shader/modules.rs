@@ -8,10 +8,15 @@ use crate::scene::{Geometry, TextureSlot, ToneMap};
 
 /// The forward pass of one kind of draw.
 pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
+    compose(sources, "pass/forward.wgsl", &forward_slots(features))
+}
+
+/// What fills the slots of the forward pass.
+pub fn forward_slots(features: &ForwardFeatures) -> Slots {
     let choose = |on: bool, with: &'static str, without: &'static str| Slot::File(if on { with } else { without });
     let ForwardFeatures { scene, material, vertex, energy_compensation, geometry, .. } = features;
     let normal_mapped = material.texture(TextureSlot::Normal).is_some();
-    let slots = Slots::from([
+    Slots::from([
         ("types", Slot::Text(types::wgsl())),
         ("interface", Slot::Text(interface::vertex_interface(vertex))),
         ("material", Slot::Text(interface::material_interface(material))),
@@ -81,8 +86,7 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
                 Alpha::Blend => "surface/alpha_blend.wgsl",
             }),
         ),
-    ]);
-    compose(sources, "pass/forward.wgsl", &slots)
+    ])
 }
 
 fn visibility(geometry: Geometry) -> &'static str {

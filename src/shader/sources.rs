@@ -2,18 +2,21 @@
 
 use std::collections::BTreeMap;
 
-macro_rules! sources {
+/// The files at these paths under `shaders/`, with their texts; for a source file two folders below the root.
+macro_rules! embedded {
     ($($path:literal),* $(,)?) => {
-        /// Every file under `shaders/`: its path there, and its text.
-        pub const SOURCES: &[(&str, &str)] = &[$(($path, include_str!(concat!("../../shaders/", $path)))),*];
+        &[$(($path, include_str!(concat!("../../shaders/", $path)))),*]
     };
 }
 
-sources![
+#[cfg(feature = "cli")]
+pub(crate) use embedded;
+
+/// Every file under `shaders/` that a frame can be made of: its path there, and its text.
+pub const SOURCES: &[(&str, &str)] = embedded![
     "brdf/d_ggx.wgsl",
     "brdf/d_ggx_anisotropic.wgsl",
     "brdf/d_gtr1.wgsl",
-    "brdf/d_gtr2_anisotropic.wgsl",
     "brdf/f_conductor.wgsl",
     "brdf/f_lazanyi.wgsl",
     "brdf/f_schlick.wgsl",
@@ -49,6 +52,7 @@ sources![
     "lighting/fresnel_schlick.wgsl",
     "lighting/fresnel_tail.wgsl",
     "lighting/lift_view.wgsl",
+    "lighting/lights.wgsl",
     "lighting/lit.wgsl",
     "lighting/lobes.wgsl",
     "lighting/prefiltered.wgsl",
@@ -69,6 +73,7 @@ sources![
     "lobe/visibility_smith_correlated.wgsl",
     "lobe/visibility_smith_separable.wgsl",
     "math/constants.wgsl",
+    "math/half_range.wgsl",
     "math/octahedral.wgsl",
     "math/orthonormal.wgsl",
     "math/vectors.wgsl",
@@ -90,6 +95,7 @@ sources![
     "surface/tangent_vertex.wgsl",
     "surface/tangents_anisotropic.wgsl",
     "surface/tangents_none.wgsl",
+    "surface/visible_point.wgsl",
 ];
 
 /// What imports find: the embedded files, any of which may be replaced, to try out a change without a build or to plant a

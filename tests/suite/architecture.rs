@@ -3,6 +3,7 @@
 mod tree;
 
 use crate::shaders::{display_features, forward_features};
+use specula::proof;
 use specula::shader::{SOURCES, ShaderSources, background_module, display_module, forward_module};
 use std::collections::BTreeSet;
 use tree::{File, exists, files, names_after, read, words};
@@ -12,6 +13,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     // Plain data.
     ("math", &[]),
     ("progress", &[]),
+    // Quantities of light, with units in their types.
     ("radiometry", &["math"]),
     ("scene", &["math", "radiometry"]),
     ("import", &["math", "progress", "scene"]),
@@ -27,6 +29,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("passes", &["frame", "gpu", "gpu_scene", "math", "scene", "shader"]),
     ("renderer", &["bake", "frame", "gpu", "gpu_scene", "math", "passes", "scene", "shader"]),
     ("capture", &["gpu", "gpu_scene", "math", "passes", "renderer", "scene"]),
+    // What the shaders are held to: WGSL beside the truth, on a device.
+    ("proof", &["bake", "gpu", "gpu_scene", "math", "progress", "reference", "renderer", "scene", "shader"]),
     // The program: everything.
     ("cli", EVERYTHING),
     ("app", EVERYTHING),
@@ -45,6 +49,7 @@ const EVERYTHING: &[&str] = &[
     "math",
     "passes",
     "progress",
+    "proof",
     "radiometry",
     "reference",
     "renderer",
@@ -151,7 +156,10 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     let on_disk: BTreeSet<String> =
         files("shaders", "wgsl").into_iter().map(|file| file.path.trim_start_matches("shaders/").to_owned()).collect();
     let embedded: BTreeSet<String> = SOURCES.iter().map(|(path, _)| (*path).to_owned()).collect();
-    assert_eq!(on_disk, embedded, "files under shaders/, and files in SOURCES");
+    let of_proofs: BTreeSet<String> = proof::SOURCES.iter().map(|(path, _)| (*path).to_owned()).collect();
+    assert_eq!(on_disk, &embedded | &of_proofs, "files under shaders/, and files in SOURCES");
+    let is_apart = |path: &String| path.starts_with("naive/") || path.starts_with("proof/");
+    assert!(of_proofs.iter().all(is_apart) && !embedded.iter().any(is_apart), "proofs have folders of their own");
 
     let mut modules = vec![background_module(&sources).unwrap()];
     modules.extend(forward_features().iter().map(|features| forward_module(&sources, features).unwrap()));

@@ -114,6 +114,22 @@ fn the_embedded_tables_are_what_bake_makes() {
 }
 
 #[test]
+fn stability_is_reported_as_a_document_as_json_and_as_files() {
+    let few = ["stability", "--evaluations", "4096"];
+    let output = specula(&few);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).starts_with("# Numerical stability"));
+    let output = specula(&[few.as_slice(), &["--json", "--seed", "7"]].concat());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&json["schema"], &json["fuzz"]["seed"]), (&"specula.stability.1".into(), &7.into()));
+    let folder = tempfile::tempdir().unwrap();
+    let output = specula(&[few.as_slice(), &["--write", &folder.path().display().to_string()]].concat());
+    assert!(output.status.success() && output.stdout.is_empty(), "{}", stderr(&output));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    assert_fails(&["stability", "--adapter", "no such adapter"], 3, "no such adapter");
+}
+
+#[test]
 fn every_used_shader_is_dumped() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("a.png").display().to_string();

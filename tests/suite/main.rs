@@ -10,5 +10,6 @@ mod lights;
 mod lit_plane;
 mod mutants;
 mod shaders;
+mod stability;
 mod support;
 mod twins;

@@ -1,13 +1,8 @@
 //! Every function of the shading model in WGSL against its float64 twin, and proof that none is left out.
 
-mod grid;
-pub(crate) mod harness;
-pub(crate) mod rows;
-
 use crate::support::gpu;
-use harness::{Twin, functions_of};
-use rows::TWINS;
 use specula::gpu::formats::Precision;
+use specula::proof::{TWINS, Twin, call, functions_of};
 use specula::shader::{SOURCES, ShaderSources, Slots, compose, create_module};
 use std::collections::BTreeSet;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -26,10 +21,11 @@ fn every_function_agrees_with_its_twin() {
     let sources = ShaderSources::default();
     let mut failures = Vec::new();
     for twin in TWINS {
-        let outcome = twin.run(&gpu, &sources).unwrap_or_else(|error| panic!("{}: {error}", twin.name()));
-        let line = format!("{}: {} comparisons, worst {}", twin.name(), outcome.comparisons, outcome.worst);
+        let outcome = twin.measure(&gpu, &sources).unwrap_or_else(|error| panic!("{}: {error}", twin.name()));
+        let (comparisons, worst) = (outcome.summary().comparisons, outcome.worst());
+        let line = format!("{}: {comparisons} comparisons, worst {worst}", twin.name());
         println!("{line}");
-        if outcome.comparisons == 0 || outcome.worst.error > twin.limit {
+        if comparisons == 0 || worst.error > twin.limit {
             failures.push(format!("{line}; allowed {:.2e}", twin.limit));
         }
     }
@@ -53,7 +49,7 @@ fn constants_are_the_floats_nearest_to_what_they_are_named_after() {
 fn every_function_has_a_twin_and_every_twin_a_function() {
     let of_file = |file: &'static str| {
         let composed = compose(&ShaderSources::default(), file, &Slots::new()).unwrap();
-        functions_of(&composed, file).into_iter().map(move |function| (file.to_owned(), function))
+        functions_of(&composed, file).unwrap().into_iter().map(move |function| (file.to_owned(), function))
     };
     let functions: BTreeSet<_> = files().flat_map(of_file).collect();
     let twins: BTreeSet<_> = TWINS.iter().map(|twin| (twin.file.to_owned(), twin.function.to_owned())).collect();
@@ -70,10 +66,13 @@ fn a_result_that_was_not_written_is_an_infinite_error() {
         @compute @workgroup_size(2) fn main(@builtin(local_invocation_index) i: u32) { results[2u * i] = 0.0; }";
     sources.insert("half.wgsl", writes_every_other.to_owned());
     let composed = compose(&sources, "half.wgsl", &Slots::new()).unwrap();
-    let results = harness::call(&gpu, &create_module(&gpu.device, "half", &composed).unwrap(), &[], 4);
+    let results = call(&gpu, &create_module(&gpu.device, "half", &composed).unwrap(), &[], 4).unwrap();
     assert_eq!(results.iter().map(|result| result.is_nan()).collect::<Vec<_>>(), [false, true, false, true]);
     let twin = Twin { truth: |_| vec![0.0], ..TWINS[0] };
-    let point = [vec![], vec![], vec![], vec![]];
-    assert_eq!(twin.compare(&[], &point, &results, 1).worst.error, f64::INFINITY);
-    assert_eq!(twin.compare(&[], &point[..1], &results[..1], 1).worst.error, 0.0);
+    let worst_of = |results: &[f32]| {
+        let points = vec![vec![]; results.len()];
+        twin.compare(vec![], points, results.to_vec(), 1).unwrap().worst().error
+    };
+    assert_eq!(worst_of(&results), f64::INFINITY);
+    assert_eq!(worst_of(&results[..1]), 0.0);
 }

@@ -138,7 +138,7 @@ mod tests {
             .into_iter()
             .filter_map(|subject| match subject.surface {
                 SurfaceKind::Standard(surface) => Some(surface),
-                SurfaceKind::Lobe(_) => None,
+                SurfaceKind::Disney(_) | SurfaceKind::Lobe(_) => None,
             })
             .collect();
         let parameters = |surface: &SurfaceMaterial| (surface.perceptual_roughness, surface.metallic);

@@ -3,7 +3,7 @@
 use super::brdf::Brdf;
 use super::exceeds;
 use super::hemisphere::Polar;
-use crate::reference::quadrature::adaptive::{Accuracy, Estimate, kronrod_nodes};
+use crate::math::quadrature::adaptive::{Accuracy, Estimate, kronrod_nodes};
 use glam::DVec3;
 use std::f64::consts::TAU;
 

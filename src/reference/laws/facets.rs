@@ -3,8 +3,8 @@
 use super::brdf::Lobe;
 use super::exceeds;
 use super::hemisphere::Polar;
+use crate::math::quadrature::adaptive::{Accuracy, Estimate};
 use crate::reference::microfacet::Distribution;
-use crate::reference::quadrature::adaptive::{Accuracy, Estimate};
 use glam::DVec3;
 use std::f64::consts::TAU;
 

@@ -7,8 +7,8 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use super::brdf::Lobe;
+use crate::math::quadrature::adaptive::{Accuracy, Estimate, Integrable, Rectangle, integrate_rectangles};
 use crate::math::spaces::orthonormal_basis;
-use crate::reference::quadrature::adaptive::{Accuracy, Estimate, Integrable, Rectangle, integrate_rectangles};
 use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 

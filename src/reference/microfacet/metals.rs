@@ -3,8 +3,8 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use super::fresnel::{F_conductor, conductor, lazanyi_shape};
+use crate::math::quadrature::GaussLegendre;
 use crate::reference::brdf::F_Schlick;
-use crate::reference::quadrature::GaussLegendre;
 use crate::scene::{Material, MetalFresnel};
 use glam::DVec3;
 

@@ -5,34 +5,38 @@
 //! (Mesa 22.3.6), times a margin for the slack that WGSL leaves other drivers in pow and log2.
 
 use super::grid::{ALPHAS, COSINES, UNIT, colors, directions, display_light, microfacets, product, spread};
-use super::harness::{Scale, Twin};
+use super::truth::{self, vec3};
+use super::twin::{Scale, Twin};
+use crate::math::color::srgb_from_linear;
+use crate::math::spaces::{octahedral_from_direction, orthonormal_basis};
+use crate::reference::albedo::Dfg;
+use crate::reference::microfacet::Distribution;
+use crate::reference::microfacet::distribution::D_GGX_anisotropic;
+use crate::reference::microfacet::fresnel::{F_Lazanyi, F_conductor};
+use crate::reference::microfacet::masking::{V_Schlick, V_SmithGGX_separable, V_SmithGGXCorrelated_anisotropic};
+use crate::reference::{brdf, color, disney, lights};
+use crate::scene::{Geometry, ToneMap};
 use glam::{DMat4, DVec3, DVec4};
-use specula::math::color::srgb_from_linear;
-use specula::math::spaces::{octahedral_from_direction, orthonormal_basis};
-use specula::reference::albedo::Dfg;
-use specula::reference::disney::bsdf::TangentFrame;
-use specula::reference::microfacet::Distribution;
-use specula::reference::microfacet::distribution::D_GGX_anisotropic;
-use specula::reference::microfacet::fresnel::{F_Lazanyi, F_conductor};
-use specula::reference::microfacet::masking::{V_Schlick, V_SmithGGX_separable, V_SmithGGXCorrelated_anisotropic};
-use specula::reference::{brdf, color, disney, lights};
-use specula::scene::{Geometry, ToneMap};
 
 const EPS: f64 = f32::EPSILON as f64;
 
-pub(crate) const TWINS: &[Twin] = &[
+pub const TWINS: &[Twin] = &[
     Twin {
         file: "math/vectors.wgsl",
         function: "normalize_or",
         grid: vectors,
-        truth: |x| {
-            let (v, fallback) = (vec3(x, 0), vec3(x, 3));
-            // The stated threshold: a square below 1e-30 is no length in f32.
-            if v.length_squared() > 1e-30 { v.normalize().to_array().into() } else { fallback.to_array().into() }
-        },
+        truth: truth::normalize_or,
         // Components of a unit vector: a small one carries the error of none but itself, yet the fallback is exact.
         scale: Scale::One,
         limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "math/half_range.wgsl",
+        function: "clamp_to_half",
+        grid: || product(&[&[0.0, 1e-40, 1.0, 65503.0, 65504.0, 65520.0, 1e30, f32::INFINITY], &[0.5], &[7e4]]),
+        truth: |x| x.iter().map(|x| x.min(65504.0)).collect(),
+        scale: Scale::One,
+        limit: 0.0,
     },
     Twin {
         file: "math/octahedral.wgsl",
@@ -46,7 +50,7 @@ pub(crate) const TWINS: &[Twin] = &[
     Twin {
         file: "brdf/d_ggx.wgsl",
         function: "D_GGX",
-        grid: microfacets,
+        grid: || microfacets(&ALPHAS),
         // The truth for vectors that are of unit length only to f32: their directions.
         truth: |x| vec![brdf::D_GGX(x[0], vec3(x, 1).normalize().dot(vec3(x, 4).normalize()))],
         scale: Scale::Result,
@@ -116,7 +120,7 @@ pub(crate) const TWINS: &[Twin] = &[
     Twin {
         file: "brdf/d_ggx_anisotropic.wgsl",
         function: "D_GGX_anisotropic",
-        grid: anisotropic_frames,
+        grid: || [anisotropic_frames(), anisotropic_microfacets()].concat(),
         truth: |x| {
             let (t, b, n, h) = (vec3(x, 2), vec3(x, 5), vec3(x, 8).normalize(), vec3(x, 11).normalize());
             // What is left of t and b along n in f32 is no property of the surface.
@@ -148,24 +152,11 @@ pub(crate) const TWINS: &[Twin] = &[
     Twin {
         file: "brdf/d_gtr1.wgsl",
         function: "D_GTR1",
-        grid: || microfacets().into_iter().filter(|x| x[0] < 1.0).collect(),
+        grid: || microfacets(&ALPHAS).into_iter().filter(|x| x[0] < 1.0).collect(),
         truth: |x| vec![disney::D_GTR1(x[0], vec3(x, 1).normalize().dot(vec3(x, 4).normalize()))],
         scale: Scale::Result,
         // Measured 4.9e-7, margin 3: as D_GGX, with the square of the denominator left out.
         limit: 1.5e-6,
-    },
-    Twin {
-        file: "brdf/d_gtr2_anisotropic.wgsl",
-        function: "D_GTR2_anisotropic",
-        grid: anisotropic_microfacets,
-        truth: |x| {
-            let (n, h) = (vec3(x, 8).normalize(), vec3(x, 11).normalize());
-            let frame = TangentFrame::new(n, vec3(x, 2));
-            vec![disney::D_GTR2_anisotropic(x[0], x[1], frame.tangent.dot(h), frame.bitangent.dot(h), n.dot(h))]
-        },
-        scale: Scale::Result,
-        // Measured 1.6e-6, margin 2.5: t and b are orthonormal to n only to a rounding.
-        limit: 4e-6,
     },
     Twin {
         file: "brdf/g1_smith_ggx.wgsl",
@@ -216,7 +207,7 @@ pub(crate) const TWINS: &[Twin] = &[
         function: "Fd_Subsurface",
         grid: || product(&[&UNIT, &COSINES, &[&[0.0], COSINES.as_slice()].concat(), &COSINES]),
         truth: |x| vec![disney::Fd_Subsurface(x[0], x[1], x[2], x[3])],
-        // F_ss vanishes where both cosines and the roughness do; its terms are of the size of 1 / (NoV + NoL).
+        // F_ss vanishes where both cosines and alpha do; its terms are of the size of 1 / (NoV + NoL).
         scale: Scale::Terms(|x| 1.0 + 1.0 / (x[1] + x[2])),
         limit: 8.0 * EPS,
     },
@@ -338,10 +329,6 @@ fn display(curve: ToneMap, exposed: &[f64]) -> Vec<f64> {
     color::tone_map(curve, vec3(exposed, 0)).to_array().into()
 }
 
-fn vec3(x: &[f64], first: usize) -> DVec3 {
-    DVec3::from_slice(&x[first..])
-}
-
 /// Two alphas, an orthonormal frame and a half vector: angles of many sizes in units of the alphas.
 fn anisotropic_microfacets() -> Vec<Vec<f32>> {
     let with_frame = |(i, point): (usize, Vec<f32>)| {
@@ -355,12 +342,13 @@ fn anisotropic_microfacets() -> Vec<Vec<f32>> {
         let alphas = [point[0] * ratio.sqrt(), point[0] / ratio.sqrt()].map(|alpha| alpha.max(1e-4));
         [&alphas, t.as_vec3().as_ref() as &[f32], b.as_vec3().as_ref(), &point[1..]].concat()
     };
-    microfacets().into_iter().enumerate().map(with_frame).collect()
+    microfacets(&ALPHAS).into_iter().enumerate().map(with_frame).collect()
 }
 
 /// Directions of many lengths, those included whose square underflows, and a fallback.
 fn vectors() -> Vec<Vec<f32>> {
-    let lengths = [0.0, 1e-25, 1e-16, 3e-15, 1e-6, 0.3, 1.0, 1.0 + 1e-6, 1e5, 1e18];
+    let lengths =
+        [0.0, 1e-40, 1e-32, 1e-28, 1e-20, 1e-16, 3e-15, 1e-6, 0.3, 1.0, 1.0 + 1e-6, 1e5, 1e18, 1e20, 1e36, 3e38];
     let all = directions(100).into_iter().flat_map(|d| lengths.map(|length| d * length));
     all.map(|v| [v.to_array(), [0.6, -0.48, 0.64]].concat()).collect()
 }
@@ -377,7 +365,7 @@ fn distances() -> Vec<Vec<f32>> {
     let ranges = [0.0, 0.02, 0.5, 1.0, 3.0, 10.0, 1000.0_f32];
     let inverse = ranges.map(|range| if range > 0.0 { (range * range).recip() } else { 0.0 });
     let relative = [0.0, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1.0, 1.001, 1.5, 30.0];
-    let absolute = [1e-6, 5e-3, 0.01, 0.02, 0.7, 20.0, 1e4_f32];
+    let absolute = [1e-20, 1e-6, 5e-3, 0.01, 0.02, 0.7, 20.0, 1e4, 1e10, 1e18, 1e20_f32];
     let of_range = ranges.iter().flat_map(|range| relative.iter().map(move |x| x * range));
     let squares: Vec<f32> = of_range.chain(absolute).map(|distance| distance * distance).collect();
     product(&[&inverse, &squares])
@@ -444,12 +432,12 @@ fn leaning(cos: f64) -> DVec3 {
 }
 
 fn geometry(geometry: Geometry, x: &[f64]) -> Vec<f64> {
-    let distribution = Distribution::ggx(x[0].max(1e-4)).unwrap();
+    let distribution = Distribution::Ggx { alpha: x[0] };
     vec![geometry.visibility(&distribution, leaning(x[1]), leaning(x[2]))]
 }
 
 fn geometry_anisotropic(geometry: Geometry, x: &[f64]) -> Vec<f64> {
-    let distribution = Distribution::ggx_anisotropic(x[0].max(1e-4), x[1].max(1e-4), 0.0).unwrap();
+    let distribution = Distribution::GgxAnisotropic { alpha_x: x[0], alpha_y: x[1], rotation_rad: 0.0 };
     let (v, l) = (DVec3::new(x[2], x[3], x[6]), DVec3::new(x[4], x[5], x[7].max(1e-15)));
     vec![geometry.visibility(&distribution, v, l)]
 }
@@ -470,7 +458,7 @@ fn anisotropic_frames() -> Vec<Vec<f32>> {
     let mut points = Vec::new();
     for (index, n) in directions(40).into_iter().enumerate() {
         let n = n.as_dvec3().normalize();
-        let (t, b) = specula::math::spaces::orthonormal_basis(n);
+        let (t, b) = crate::math::spaces::orthonormal_basis(n);
         for (alpha_t, alpha_b) in [(1e-3, 1e-3), (1.0, 1e-3), (0.4, 0.01), (0.02, 0.5), (1.0, 1.0)] {
             for step in [0.0, 0.1, 1.0, 3.0, 10.0] {
                 let angle = index as f64;

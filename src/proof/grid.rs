@@ -1,6 +1,8 @@
 //! Where functions are compared: argument lists that reach the ends of every domain.
 
+use crate::math::spaces::orthonormal_basis;
 use glam::{Vec3, vec3};
+use std::f64::consts::TAU;
 
 /// Every combination of one value from each axis.
 pub(super) fn product(axes: &[&[f32]]) -> Vec<Vec<f32>> {
@@ -24,6 +26,15 @@ pub(super) const ALPHAS: [f32; 11] = [1e-4, 2e-4, 5e-4, 1e-3, 3e-3, 0.01, 0.03, 
 pub(super) const COSINES: [f32; 17] =
     [1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 0.9999, 0.999_99, 0.999_999_9, 1.0];
 
+/// Numbers from `first` to `last`, so many a decade, even in their logarithm.
+pub(super) fn log_steps(first: f32, last: f32, a_decade: u32) -> Vec<f32> {
+    let (start, end) = (f64::from(first).log10(), f64::from(last).log10());
+    let steps = ((end - start) * f64::from(a_decade)).round() as i32;
+    let at = |step: i32| 10f64.powf(start + (end - start) * f64::from(step) / f64::from(steps)) as f32;
+    // The ends as they were given, whatever the logarithm rounded.
+    (0..=steps).map(|step| at(step).clamp(first, last)).collect()
+}
+
 /// Numbers in [0, 1] for weights and reflectances.
 pub(super) const UNIT: [f32; 9] = [0.0, 1e-3, 0.02, 0.04, 0.2, 0.5, 0.8, 0.96, 1.0];
 
@@ -42,12 +53,12 @@ pub(super) fn directions(count: usize) -> Vec<Vec3> {
 }
 
 /// A normal and a half vector for every alpha: angles of many sizes in units of alpha, in random frames.
-pub(super) fn microfacets() -> Vec<Vec<f32>> {
+pub(super) fn microfacets(alphas: &[f32]) -> Vec<Vec<f32>> {
     let in_alphas = [0.0, 0.1, 0.3, 0.7, 1.0, 2.0, 5.0, 12.0, 40.0, 150.0];
     let in_rad = [0.02, 0.1, 0.4, 0.8, 1.2, 1.5, 1.57];
     let frames = directions(24);
     let mut points = Vec::new();
-    for alpha in ALPHAS {
+    for &alpha in alphas {
         let angles = in_alphas.iter().map(|x| x * alpha).chain(in_rad).filter(|angle| *angle < 1.571);
         for (i, angle) in angles.enumerate() {
             for (j, n) in frames.iter().enumerate() {
@@ -56,6 +67,41 @@ pub(super) fn microfacets() -> Vec<Vec<f32>> {
                 let tangent = side * turn.cos() + n.cross(side) * turn.sin();
                 let h = (n.as_dvec3() * f64::from(angle).cos() + tangent.as_dvec3() * f64::from(angle).sin()).as_vec3();
                 points.push([&[alpha], n.as_ref() as &[f32], h.as_ref()].concat());
+            }
+        }
+    }
+    points
+}
+
+/// Perceptual roughness, n, v and l where a picture has them: the view even in projected area, three lights in four
+/// where GGX reflects the view, the fourth even in projected area as well. `a_decade` alphas from 1e-4 to 1, `samples` for
+/// each, in random frames.
+pub(super) fn sampled_lobe(a_decade: u32, samples: usize) -> Vec<Vec<f32>> {
+    let frames = directions(64);
+    let mut points = Vec::new();
+    for (step, alpha) in log_steps(1e-4, 1.0, a_decade).into_iter().enumerate() {
+        for i in 0..samples {
+            let index = step * samples + i;
+            let n = frames[index % frames.len()].as_dvec3().normalize();
+            let (tangent, bitangent) = orthonormal_basis(n);
+            let around = |cosine: f64, dimension: u32| {
+                let phi = TAU * f64::from(spread(index, dimension));
+                let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                tangent * (sine * phi.cos()) + bitangent * (sine * phi.sin()) + n * cosine
+            };
+            let even = |dimension: u32| f64::from(spread(index, dimension));
+            let v = around((1.0 - even(0)).sqrt(), 1);
+            let l = if i % 4 == 3 {
+                around((1.0 - even(2)).sqrt(), 3)
+            } else {
+                // Walter et al. 2007, equation 35: tan^2 = alpha^2 u / (1 - u).
+                let tan2 = f64::from(alpha).powi(2) * even(2) / (1.0 - even(2));
+                let h = around((1.0 + tan2).sqrt().recip(), 3);
+                h * (2.0 * v.dot(h)) - v
+            };
+            if n.dot(l) > 0.0 {
+                let [n, v, l] = [n, v, l].map(|x| x.as_vec3().to_array());
+                points.push([&[alpha.sqrt()], n.as_slice(), &v, &l].concat());
             }
         }
     }
