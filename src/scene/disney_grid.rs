@@ -8,7 +8,7 @@ pub type Row = (&'static str, fn(value: f32) -> Material);
 
 /// From top to bottom. The base colour of each shows the effect.
 pub const ROWS: [Row; 10] = [
-    ("subsurface", |subsurface| disney([0.80, 0.42, 0.30], 0.0, 0.6, Disney { subsurface, ..Disney::default() })),
+    ("subsurface", |subsurface| disney([0.66, 0.33, 0.23], 0.0, 0.6, Disney { subsurface, ..Disney::default() })),
     ("metallic", |metallic| disney([0.92, 0.60, 0.22], metallic, 0.25, Disney::default())),
     ("specular", |specular| disney([0.60, 0.05, 0.06], 0.0, 0.25, Disney { specular, ..Disney::default() })),
     ("specular_tint", |specular_tint| {
@@ -17,7 +17,7 @@ pub const ROWS: [Row; 10] = [
     ("perceptual_roughness", |perceptual_roughness| {
         disney([0.10, 0.32, 0.24], 0.0, perceptual_roughness, Disney { specular: 0.7, ..Disney::default() })
     }),
-    ("anisotropic", |anisotropic| disney([0.86, 0.68, 0.50], 1.0, 0.5, Disney { anisotropic, ..Disney::default() })),
+    ("anisotropic", |anisotropic| disney([0.86, 0.68, 0.50], 1.0, 0.4, Disney { anisotropic, ..Disney::default() })),
     ("sheen", |sheen| disney([0.07, 0.015, 0.10], 0.0, 0.9, Disney { specular: 0.2, sheen, ..Disney::default() })),
     ("sheen_tint", |sheen_tint| {
         disney([0.16, 0.02, 0.01], 0.0, 0.9, Disney { specular: 0.2, sheen: 1.0, sheen_tint, ..Disney::default() })
