@@ -45,6 +45,10 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     if [&args.difference, &args.heat_map].into_iter().flatten().any(|path| path == Path::new("-")) {
         return Err(CliError::Usage("--difference and --heat-map cannot go to stdout: the results do".into()));
     }
+    let inputs = [Some(&args.actual), Some(&args.expected), args.mask.as_ref()];
+    if inputs.into_iter().flatten().filter(|path| *path == Path::new("-")).count() > 1 {
+        return Err(CliError::Usage("only one picture can come from stdin".into()));
+    }
     let (actual, expected) = (load(&args.actual)?, load(&args.expected)?);
     let mask = args.mask.as_deref().map(load).transpose()?.map(|picture| Mask::from_picture(&picture));
     let pair = Pair::new(&actual, &expected, mask.as_ref()).map_err(|error| explain(&error, args))?;
@@ -52,11 +56,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), CliError> {
     let measured = measure::measure(&pair, &metrics);
     let broken = conditions::broken(&args.fail, &measured)?;
     write_pictures(args, &pair, &measured)?;
-    let text = if args.json {
-        report::json(args, &pair, &measured, &broken)?
-    } else {
-        report::text(args, &pair, &measured)
-    };
+    let text =
+        if args.json { report::json(args, &pair, &measured, &broken)? } else { report::text(args, &pair, &measured) };
     output::write(Path::new("-"), text.as_bytes())?;
     verdict(args, &measured, &broken)
 }
@@ -103,19 +104,24 @@ fn kind(encoding: Encoding) -> &'static str {
 }
 
 fn write_pictures(args: &CompareArgs, pair: &Pair<'_>, measured: &Measured) -> Result<(), CliError> {
+    let mut files = Vec::new();
     if let Some(path) = &args.difference {
-        output::write(path, &pictures::difference(path, pair)?)?;
+        files.push((path, pictures::difference(path, pair)?));
     }
     if let (Some(path), Some(map)) = (&args.heat_map, &measured.flip_map) {
-        output::write(path, &pictures::heat_map(path, map)?)?;
+        files.push((path, pictures::heat_map(path, map)?));
     }
-    Ok(())
+    files.into_iter().try_for_each(|(path, bytes)| output::write(path, &bytes))
 }
 
 fn verdict(args: &CompareArgs, measured: &Measured, broken: &[(&Condition, f64)]) -> Result<(), CliError> {
     if let [(condition, value), ..] = broken {
         let more = if broken.len() > 1 { format!(" (and {} more)", broken.len() - 1) } else { String::new() };
-        return Err(CliError::CheckFailed(format!("{} is {value:.6}, not {condition}{more}", condition.name)));
+        return Err(CliError::CheckFailed(format!(
+            "{} is {}, not {condition}{more}",
+            condition.name,
+            report::number(*value)
+        )));
     }
     if args.fail.is_empty() && measured.differing > 0.0 {
         return Err(CliError::CheckFailed(format!(

@@ -31,8 +31,9 @@ pub fn picture_from_slice(bytes: &[u8], source_name: &str) -> Result<Picture, Im
     let decoded = match bytes {
         [0x89, b'P', b'N', b'G', ..] => guarded(|| decode_png(bytes)),
         [0x76, 0x2F, 0x31, 0x01, ..] => guarded(|| decode_exr(bytes)),
-        _ => Some(Err(Fault::at_byte(0, "is neither a PNG nor an OpenEXR file")
-            .advise("convert the picture to .png or .exr"))),
+        _ => Some(Err(
+            Fault::at_byte(0, "is neither a PNG nor an OpenEXR file").advise("convert the picture to .png or .exr")
+        )),
     };
     decoded.unwrap_or_else(|| Err(broken("the decoder gave up"))).map_err(|fault| fault.in_file(source_name))
 }

@@ -34,8 +34,7 @@ pub fn max_abs(pair: &Pair<'_>) -> MaxAbs {
         for (c, channel) in CHANNELS.into_iter().enumerate() {
             let value = (f64::from(actual[c]) - f64::from(expected[c])).abs();
             if value > worst.value {
-                worst =
-                    MaxAbs { value, at: pair.place(index), channel, actual: actual[c], expected: expected[c] };
+                worst = MaxAbs { value, at: pair.place(index), channel, actual: actual[c], expected: expected[c] };
             }
         }
     }

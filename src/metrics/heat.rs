@@ -3,14 +3,8 @@
 use super::map::ErrorMap;
 
 /// Colours of errors from 0 to 1 at equal steps, sRGB: luminance rises all the way, so that the map can be read in grey.
-const RAMP: [[f64; 3]; 6] = [
-    [0.0, 0.0, 0.0],
-    [0.25, 0.06, 0.42],
-    [0.62, 0.13, 0.45],
-    [0.93, 0.36, 0.30],
-    [0.99, 0.70, 0.33],
-    [1.0, 1.0, 0.85],
-];
+const RAMP: [[f64; 3]; 6] =
+    [[0.0, 0.0, 0.0], [0.25, 0.06, 0.42], [0.62, 0.13, 0.45], [0.93, 0.36, 0.30], [0.99, 0.70, 0.33], [1.0, 1.0, 0.85]];
 
 /// The colour of an error in [0, 1]; what lies outside is clamped.
 pub fn heat(error: f64) -> [u8; 3] {

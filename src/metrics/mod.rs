@@ -10,6 +10,8 @@ pub mod heat;
 mod map;
 mod pair;
 pub mod ssim;
+#[cfg(test)]
+mod tests;
 
 pub use map::{ErrorMap, Pool};
 pub use pair::{CHANNELS, Mask, Pair, PairError, Side};

@@ -92,7 +92,9 @@ mod tests {
         let condition = parse(" flip.mean <= 0.01 ");
         assert_eq!((condition.name.as_str(), condition.metric), ("flip.mean", Metric::Flip));
         assert!(condition.holds(0.01) && !condition.holds(0.011) && !condition.holds(f64::INFINITY));
-        assert!(parse("psnr>=40").holds(f64::INFINITY) && parse("psnr>=40").holds(40.0) && !parse("psnr>=40").holds(39.0));
+        assert!(
+            parse("psnr>=40").holds(f64::INFINITY) && parse("psnr>=40").holds(40.0) && !parse("psnr>=40").holds(39.0)
+        );
         assert!(!parse("max-abs<0.5").holds(0.5) && parse("max-abs<0.5").holds(0.4));
         assert!(!parse("ssim>0.5").holds(0.5) && parse("ssim>0.5").holds(0.6));
         assert!(parse("pixels<=0.5%").holds(0.005) && !parse("pixels<=0.5%").holds(0.006));

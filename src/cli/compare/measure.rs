@@ -69,10 +69,7 @@ pub(super) fn chosen(
     if let Some(metric) = Metric::value_variants().iter().find(|metric| asked(metric) && !metric.suits(encoding)) {
         let name = metric.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         let instead = if *metric == Metric::HdrFlip { "flip" } else { "hdr-flip, relative-rms or max-abs" };
-        return Err(CliError::Usage(format!(
-            "{name} is not for pictures that are {}; take {instead}",
-            kind(encoding)
-        )));
+        return Err(CliError::Usage(format!("{name} is not for pictures that are {}; take {instead}", kind(encoding))));
     }
     let for_heat_map = |metric: &Metric| heat_map && matches!(metric, Metric::Flip | Metric::HdrFlip);
     let wanted = |metric: &Metric| named.is_empty() || asked(metric) || for_heat_map(metric);
@@ -122,7 +119,7 @@ pub(super) fn measure(pair: &Pair<'_>, metrics: &[Metric]) -> Measured {
                 let worst = difference::max_abs(pair);
                 let ((x, y), channel) = (worst.at, worst.channel);
                 let remark = format!("{channel} of pixel ({x}, {y}): {} against {}", worst.actual, worst.expected);
-                measured.push(metric, &[(Some(worst.value), remark)]);
+                measured.push(metric, &[(Some(worst.value), remark_if(worst.value > 0.0, remark))]);
             }
             Metric::RelativeRms => {
                 measured.push(metric, &[(Some(difference::relative_rms(pair)), "in linear light".into())]);
@@ -134,11 +131,16 @@ pub(super) fn measure(pair: &Pair<'_>, metrics: &[Metric]) -> Measured {
                 let pool = map.pool(pair);
                 let (x, y) = pool.max_at;
                 let plain = |value: f64| (Some(value), String::new());
-                let worst = (Some(pool.max), format!("pixel ({x}, {y})"));
+                let worst = (Some(pool.max), remark_if(pool.max > 0.0, format!("pixel ({x}, {y})")));
                 measured.push(metric, &[plain(pool.mean), plain(pool.median), plain(pool.p99), worst]);
                 measured.flip_map = Some(map);
             }
         }
     }
     measured
+}
+
+/// No place is the worst where all are right.
+fn remark_if(worth_it: bool, remark: String) -> String {
+    if worth_it { remark } else { String::new() }
 }

@@ -11,9 +11,8 @@ use std::path::Path;
 /// The file with the differences of the pixels that count; others are black.
 pub(super) fn difference(path: &Path, pair: &Pair<'_>) -> Result<Vec<u8>, CliError> {
     let texels = pair.actual().texels.iter().zip(&pair.expected().texels).enumerate();
-    let signed: Vec<Vec3> = texels
-        .map(|(i, (a, b))| if pair.is_selected(i) { (*a - *b).truncate() } else { Vec3::ZERO })
-        .collect();
+    let signed: Vec<Vec3> =
+        texels.map(|(i, (a, b))| if pair.is_selected(i) { (*a - *b).truncate() } else { Vec3::ZERO }).collect();
     let (width, height) = (pair.actual().width, pair.actual().height);
     let bytes = match Format::of(path)? {
         Format::Exr => {

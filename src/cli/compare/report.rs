@@ -18,11 +18,16 @@ pub(super) fn text(args: &CompareArgs, pair: &Pair<'_>, measured: &Measured) -> 
     }
     text.push('\n');
     for measurement in &measured.measurements {
-        let value = measurement.value.map_or_else(|| "-".into(), |value| format!("{value:.6}"));
+        let value = measurement.value.map_or_else(|| "-".into(), number);
         let line = format!("  {:15} {value:>12}  {}", measurement.name, measurement.remark);
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text
+}
+
+/// A value with the digits that matter.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 1e-3 { format!("{value:.6}") } else { format!("{value:.3e}") }
 }
 
 /// Infinite values, as the PSNR of equal pictures, and those that do not exist are null.

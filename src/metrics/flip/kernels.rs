@@ -52,11 +52,7 @@ impl Contrast {
         for (wide, narrow) in blue_yellow.values.iter_mut().zip(&narrow.values) {
             *wide = wide_share * *wide + narrow_share * narrow;
         }
-        [
-            y.filtered(&self.achromatic, &self.achromatic),
-            cx.filtered(&self.red_green, &self.red_green),
-            blue_yellow,
-        ]
+        [y.filtered(&self.achromatic, &self.achromatic), cx.filtered(&self.red_green, &self.red_green), blue_yellow]
     }
 }
 
