@@ -9,6 +9,7 @@ pub mod gpu;
 pub mod gpu_scene;
 pub mod import;
 pub mod math;
+pub mod metrics;
 pub mod passes;
 pub mod progress;
 #[cfg(feature = "cli")]

@@ -3,6 +3,7 @@
 mod bake;
 mod camera;
 mod color;
+mod compare;
 mod environment;
 mod error;
 mod furnace;
@@ -31,6 +32,8 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
     Furnace(Box<furnace::FurnaceArgs>),
+    /// Compare two pictures, PNG with PNG or EXR with EXR: pixels, PSNR, SSIM, FLIP.
+    Compare(Box<compare::CompareArgs>),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
     /// Measure what f32 on this device makes of the shading model, and search it for faults.
@@ -39,11 +42,12 @@ enum Command {
 
 /// Runs the program with the arguments of the process.
 ///
-/// Exit codes: 0 done; 1 a check failed; 2 bad usage, unreadable input or a GPU error; 3 no usable adapter.
+/// Exit codes: 0 done; 1 a check failed or pictures differ; 2 bad usage, unreadable input or a GPU error; 3 no usable adapter.
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Furnace(args) => furnace::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),
     };

@@ -2,13 +2,10 @@
 
 use super::error::{Fault, ImportError};
 use super::limits::{Limits, guarded};
-use super::read_file;
+use super::{openexr, read_file};
 use crate::scene::EnvironmentImage;
 use ::image::ImageDecoder;
 use ::image::codecs::hdr::HdrDecoder;
-use exr::image::{AnyChannels, FlatSamples, Layer};
-use exr::meta::MetaData;
-use exr::prelude::{ReadChannels, ReadLayers};
 use glam::Vec3;
 use std::io::Cursor;
 use std::path::Path;
@@ -75,48 +72,18 @@ fn decode_hdr(bytes: &[u8]) -> Result<EnvironmentImage, Fault> {
 }
 
 fn decode_exr(bytes: &[u8]) -> Result<EnvironmentImage, Fault> {
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
-    let mut samples = 0_u64;
-    for header in &meta.headers {
-        check_size(header.layer_size.width(), header.layer_size.height())?;
-        let texels = (header.layer_size.width() * header.layer_size.height()) as u64;
-        samples = samples.saturating_add(texels.saturating_mul(header.channels.list.len() as u64));
-    }
-    if samples.saturating_mul(4) > Limits::default().decoded_bytes {
-        return Err(broken("its layers are larger than the limit on decoded bytes"));
-    }
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(broken)?;
-    image.layer_data.iter().find_map(layer_as_panorama).ok_or_else(|| {
+    let layers = openexr::layers(bytes, check_size, broken)?;
+    layers.iter().find_map(layer_as_panorama).ok_or_else(|| {
         Fault::at_byte(0, "no layer has the channels R, G and B, or Y, at full resolution")
             .advise("export the panorama with RGB channels")
     })
 }
 
 /// A layer's colours; `None` if it has none.
-fn layer_as_panorama(layer: &Layer<AnyChannels<FlatSamples>>) -> Option<EnvironmentImage> {
-    let (width, height) = (layer.size.width(), layer.size.height());
-    let channel = |wanted: &str| -> Option<Vec<f32>> {
-        let is_wanted = |name: &str| name.rsplit('.').next() == Some(wanted);
-        let channel = layer.channel_data.list.iter().find(|channel| is_wanted(&channel.name.to_string()))?;
-        let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
-        (values.len() == width * height).then_some(values)
-    };
-    let (red, green, blue) = match (channel("R"), channel("G"), channel("B")) {
-        (Some(red), Some(green), Some(blue)) => (red, green, blue),
-        _ => {
-            let luminance = channel("Y")?;
-            (luminance.clone(), luminance.clone(), luminance)
-        }
-    };
-    let texels = red.into_iter().zip(green).zip(blue).map(|((r, g), b)| Vec3::new(r, g, b)).collect();
-    Some(EnvironmentImage { width: u32::try_from(width).ok()?, height: u32::try_from(height).ok()?, texels })
+fn layer_as_panorama(layer: &openexr::AnyLayer) -> Option<EnvironmentImage> {
+    let (width, height) = openexr::size(layer)?;
+    let texels = openexr::colors(layer)?;
+    Some(EnvironmentImage { width, height, texels })
 }
 
 fn sanitize(texels: &mut [Vec3]) {

@@ -15,7 +15,7 @@ use std::fmt::Display;
 use std::io::Cursor;
 
 /// What a PNG may unpack besides its pixels: rows, profiles and comments, which may be bombs as well.
-const DECODER_BYTES: u64 = 64 << 20;
+pub(super) const DECODER_BYTES: u64 = 64 << 20;
 
 /// Decodes those images of the document that `indices` list, in that order, on all cores.
 pub(super) fn import(
@@ -129,7 +129,8 @@ fn is_deep(color: ColorType) -> bool {
     matches!(color, ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16)
 }
 
-fn finish(decoder: impl ImageDecoder) -> ImageResult<(u32, u32, Pixels)> {
+/// Decodes to four channels, of 8 bits or of 16.
+pub(super) fn finish(decoder: impl ImageDecoder) -> ImageResult<(u32, u32, Pixels)> {
     let deep = is_deep(decoder.color_type());
     let image = DynamicImage::from_decoder(decoder)?;
     let (width, height) = (image.width(), image.height());

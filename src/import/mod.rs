@@ -1,4 +1,4 @@
-//! Files to plain data: glTF 2.0 models and environment panoramas.
+//! Files to plain data: glTF 2.0 models, environment panoramas, and pictures to compare.
 //!
 //! Everything a file says is checked here, once, so that a [`Scene`] needs no checks. No bytes make these functions
 //! panic; memory is bounded by [`Limits`], time grows linearly with the file. Nothing outside the model's folder is
@@ -20,6 +20,8 @@ mod limits;
 mod materials;
 mod nodes;
 mod normals;
+mod openexr;
+mod picture;
 mod references;
 mod resources;
 mod tangents;
@@ -33,6 +35,7 @@ pub use environment::{environment_from_path, environment_from_slice};
 pub use error::{ImportError, Place, Warning};
 pub use extensions::SUPPORTED_EXTENSIONS;
 pub use limits::Limits;
+pub use picture::{picture_from_path, picture_from_slice};
 
 use crate::progress::{Progress, Silent};
 use crate::scene::{Material, Mesh, Primitive, Scene};

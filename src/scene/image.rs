@@ -62,3 +62,22 @@ pub struct RadianceImage {
     /// `width * height` texels from the top left: linear Rec.709 radiance in cd/m2, multiplied with the coverage in w.
     pub texels: Vec<glam::Vec4>,
 }
+
+/// What the numbers of a [`Picture`] are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// Display-referred: sRGB-encoded, in [0, 1].
+    Srgb,
+    /// Linear Rec.709 radiance in cd/m2, of any size.
+    Linear,
+}
+
+/// A picture as its file has it, for comparison with another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    pub encoding: Encoding,
+    /// `width * height` texels from the top left: the colour multiplied with the coverage, which is in w.
+    pub texels: Vec<glam::Vec4>,
+}

@@ -19,7 +19,7 @@ mod view;
 pub use camera::{Camera, Projection};
 pub use disney::Disney;
 pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, SpecularTile};
-pub use image::{Image, Pixels, RadianceImage, Sampler, Texture, Wrap};
+pub use image::{Encoding, Image, Picture, Pixels, RadianceImage, Sampler, Texture, Wrap};
 pub use light::{Light, LightInWorld, LightKind};
 pub use material::{AlphaMode, Material, MetalFresnel, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};

@@ -20,6 +20,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     // The float64 truth, and what is made from it. The renderer reads the baked tables and never the truth.
     ("reference", &["math", "progress", "scene"]),
     ("bake", &["math", "progress", "reference", "scene"]),
+    // How far two pictures are apart.
+    ("metrics", &["math", "scene"]),
     // What will be drawn, on the CPU.
     ("shader", &["math", "scene"]),
     ("frame", &["math", "scene", "shader"]),
@@ -47,6 +49,7 @@ const EVERYTHING: &[&str] = &[
     "gpu_scene",
     "import",
     "math",
+    "metrics",
     "passes",
     "progress",
     "proof",
@@ -72,7 +75,7 @@ const CONFINED: &[(&str, &[&str])] = &[
 ];
 
 /// Modules that know nothing of a GPU.
-const WITHOUT_GPU: [&str; 7] = ["math", "progress", "scene", "import", "reference", "bake", "frame"];
+const WITHOUT_GPU: [&str; 8] = ["math", "progress", "scene", "import", "reference", "bake", "metrics", "frame"];
 
 /// What passes share.
 const SHARED_BY_PASSES: [&str; 1] = ["ForwardTarget"];

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod cli;
+mod compare;
 mod disney;
 mod frames;
 mod goldens;
