@@ -18,6 +18,7 @@ mod render;
 pub mod sampling;
 mod strokes;
 pub mod surface;
+pub mod techniques;
 #[cfg(test)]
 mod tests;
 pub mod texture;
