@@ -2,6 +2,10 @@
 
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
+mod path;
+
+pub(super) use path::{PathDraws, Paths};
+
 use super::albedo::DirectionalAlbedo;
 use super::bsdf::{Bsdf, ModelChoices, lift_view};
 use super::disney::bsdf::{DisneyBsdf, DisneyMaterial, TangentFrame};
@@ -9,7 +13,7 @@ use super::environment::EnvironmentSampler;
 use super::lights;
 use super::surface::Surface;
 use super::techniques::{Draws, Facets, Techniques};
-use crate::scene::{Environment, LightInWorld, Scene};
+use crate::scene::{Environment, LightInWorld, LightKind, Scene};
 use glam::DVec3;
 
 /// The BSDF of a surface, of whichever model its material is.
@@ -72,9 +76,10 @@ impl<'a> Lighting<'a> {
         }
         let view = lift_view(surface.normal_in_world, view);
         let bsdf = self.model(surface, view);
+        let everything_is_seen = |_, _| 1.0;
         surface.emissive_nits
-            + self.radiance_from_lights(surface, &bsdf)
-            + self.radiance_from_environment(surface.normal_in_world, view, &bsdf, draws) * surface.occlusion
+            + self.radiance_from_lights(surface, &bsdf, everything_is_seen)
+            + self.radiance_from_environment(surface, view, &bsdf, draws, everything_is_seen) * surface.occlusion
     }
 
     fn model(&self, surface: &Surface, view: DVec3) -> Model<'_> {
@@ -91,25 +96,43 @@ impl<'a> Lighting<'a> {
         Model::Disney(DisneyBsdf::new(&material, TangentFrame::new(n, surface.tangent_in_world), view))
     }
 
-    fn radiance_from_lights(&self, surface: &Surface, bsdf: &Model<'_>) -> DVec3 {
-        let from_light = |light| {
+    /// `seen` is the share of light, in [0, 1], that passes along a direction up to a distance in metres.
+    fn radiance_from_lights(&self, surface: &Surface, bsdf: &Model<'_>, seen: impl Fn(DVec3, f64) -> f64) -> DVec3 {
+        let from_light = |light: &LightInWorld| {
             let incidence = lights::incidence(light, surface.position_in_world)?;
-            let NoL = surface.normal_in_world.dot(incidence.direction_in_world);
-            Some(bsdf.evaluate(incidence.direction_in_world) * incidence.illuminance_lux * NoL.max(0.0))
+            let direction = incidence.direction_in_world;
+            let NoL = surface.normal_in_world.dot(direction);
+            let radiance = bsdf.evaluate(direction) * incidence.illuminance_lux * NoL.max(0.0);
+            let distance_m = match light.kind {
+                LightKind::Directional => f64::INFINITY,
+                LightKind::Point { .. } | LightKind::Spot { .. } => {
+                    light.position_in_world.distance(surface.position_in_world)
+                }
+            };
+            (radiance != DVec3::ZERO).then(|| radiance * seen(direction, distance_m))
         };
         self.lights.iter().filter_map(from_light).sum()
     }
 
     /// int f L cos by multiple importance sampling with the balance heuristic (Veach 1997, section 9.2).
-    fn radiance_from_environment(&self, normal: DVec3, view: DVec3, bsdf: &Model<'_>, draws: &Draws) -> DVec3 {
+    fn radiance_from_environment(
+        &self,
+        surface: &Surface,
+        view: DVec3,
+        bsdf: &Model<'_>,
+        draws: &Draws,
+        seen: impl Fn(DVec3, f64) -> f64,
+    ) -> DVec3 {
         let Some(environment) = self.environment else { return DVec3::ZERO };
         let techniques = Techniques::new(bsdf.facets(), view, self.environment_sampler.as_ref());
         let estimate = |light: DVec3| {
-            let NoL = normal.dot(light);
+            let NoL = surface.normal_in_world.dot(light);
             if NoL <= 0.0 {
                 return DVec3::ZERO;
             }
-            bsdf.evaluate(light) * environment.radiance(light) * (NoL / techniques.pdf_sum(light))
+            let radiance = environment.radiance(light);
+            let seen = if radiance == DVec3::ZERO { 0.0 } else { seen(light, f64::INFINITY) };
+            bsdf.evaluate(light) * radiance * (seen * NoL / techniques.pdf_sum(light))
         };
         techniques.sample(draws).into_iter().flatten().map(estimate).sum()
     }

@@ -9,6 +9,7 @@ pub mod bsdf;
 pub mod color;
 pub mod disney;
 pub mod environment;
+mod estimate;
 pub mod geometry;
 pub mod integrator;
 pub mod laws;
@@ -24,4 +25,5 @@ mod tests;
 pub mod texture;
 
 pub use crate::math::quadrature;
+pub use estimate::{Estimate, EstimateOptions, REPLICATES, estimate};
 pub use render::{ReferenceOptions, render};

@@ -82,6 +82,13 @@ impl<'a> Techniques<'a> {
         self.pdf_mirrored(light) + pdf_cosine_hemisphere(light.z)
     }
 
+    /// One direction in world space by either of the techniques that know the surface, and its density, 1/sr.
+    pub(super) fn sample_surface(&self, u: DVec2) -> (DVec3, f64) {
+        let halves = DVec2::new((2.0 * u.x).fract(), u.y);
+        let light = if u.x < 0.5 { self.sample_mirrored(halves) } else { self.sample_cosine(halves) };
+        (light, 0.5 * self.pdf_surface(light))
+    }
+
     /// Sum of the techniques' densities at a direction above the horizon, 1/sr.
     pub(super) fn pdf_sum(&self, light_in_world: DVec3) -> f64 {
         self.pdf_surface(light_in_world) + self.environment.map_or(0.0, |environment| environment.pdf(light_in_world))
