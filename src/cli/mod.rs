@@ -12,6 +12,7 @@ mod overrides;
 mod progress;
 mod render;
 mod stats;
+mod truth;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -7,6 +7,7 @@ pub mod albedo;
 pub mod brdf;
 pub mod bsdf;
 pub mod color;
+pub mod compensation;
 pub mod disney;
 pub mod environment;
 mod estimate;
@@ -23,6 +24,7 @@ pub mod techniques;
 #[cfg(test)]
 mod tests;
 pub mod texture;
+pub mod walk;
 
 pub use crate::math::quadrature;
 pub use estimate::{Estimate, EstimateOptions, REPLICATES, estimate};

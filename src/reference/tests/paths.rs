@@ -108,8 +108,8 @@ fn inside_a_shining_ball_each_reflection_adds_its_power_of_the_albedo() {
         let expected = (1.0 - f64::powi(albedo, bounces as i32 + 1)) / (1.0 - albedo);
         worst = worst.max((seen / expected - 1.0).abs());
     }
-    println!("ball {worst:e}");
-    assert!(worst < 5e-3, "{worst:e}");
+    // Measured 4.5e-3, mostly noise; margin 2.
+    assert!(worst < 9e-3, "{worst:e}");
 }
 
 #[test]
@@ -121,8 +121,8 @@ fn white_bodies_vanish_in_a_furnace_however_light_runs_between_them() {
     scene.meshes[0].primitives.push(square(0.8, 1));
     scene.environment = Some(Environment::new(EnvironmentImage::constant(Vec3::ONE)));
     let seen = mean(&paths(&scene, &narrow_view(), 1000, 4096)).x;
-    println!("furnace {seen}");
-    assert!((seen - 1.0).abs() < 5e-3, "{seen}");
+    // Measured 1.0e-3; margin 3.
+    assert!((seen - 1.0).abs() < 3e-3, "{seen}");
     let cut = mean(&paths(&scene, &narrow_view(), 1, 4096)).x;
     assert!(cut < 0.95, "{cut}");
 }
