@@ -6,6 +6,8 @@ pub trait Progress: Sync {
     fn begin(&self, stage: &str, total: u64);
     /// `steps` more steps of the current stage are done.
     fn advance(&self, steps: u64);
+    /// The current stage is now expected to take `total` steps in all.
+    fn expect(&self, _total: u64) {}
 }
 
 /// Listens to nothing.

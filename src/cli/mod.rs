@@ -14,6 +14,7 @@ mod progress;
 mod render;
 mod stability;
 mod stats;
+mod truth;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -76,4 +76,10 @@ impl Progress for StderrProgress {
         state.done += steps;
         self.show(&mut state);
     }
+
+    fn expect(&self, total: u64) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.total = total;
+        self.show(&mut state);
+    }
 }

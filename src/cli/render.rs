@@ -9,6 +9,7 @@ use super::output::{self, Format};
 use super::overrides;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
+use super::truth::TruthArgs;
 use crate::bake::environment;
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, submit};
 use crate::gpu::formats::Precision;
@@ -16,7 +17,7 @@ use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
 use crate::import::{ImportOptions, Imported, SceneChoice, model_from_path, model_from_slice};
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
-use crate::reference::{ReferenceOptions, render as render_reference};
+use crate::reference::estimate;
 use crate::renderer::Renderer;
 use crate::scene::{Background, EnvironmentMaps, Geometry, RadianceImage, Scene, ToneMap, View};
 use glam::{UVec2, Vec3};
@@ -49,6 +50,8 @@ pub(super) struct RenderArgs {
     look: LookArgs,
     #[command(flatten)]
     driver: DriverArgs,
+    #[command(flatten)]
+    truth: TruthArgs,
     /// Which scene of the file, by number or name, instead of its default.
     #[arg(long, value_name = "N|NAME")]
     scene: Option<String>,
@@ -104,9 +107,6 @@ struct DriverArgs {
     /// Precision of the radiance target, and of .exr files.
     #[arg(long, value_enum, default_value = "half")]
     precision: PrecisionArg,
-    /// Samples a pixel of the reference renderer.
-    #[arg(long, value_name = "N", default_value_t = 64)]
-    samples: u32,
     /// Part of the name of the adapter to use.
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -204,6 +204,11 @@ struct Rendered {
     adapter: Option<AdapterStats>,
     gpu: Option<GpuStats>,
     warnings: Vec<String>,
+    /// Samples a pixel.
+    samples: u32,
+    /// Estimated by the reference renderer where it is asked to.
+    standard_error: Option<RadianceImage>,
+    relative_error: Option<f64>,
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
@@ -211,6 +216,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if args.json && args.output == Path::new("-") {
         return Err(CliError::Usage("--json and `-o -` both want stdout; use --stats FILE.json".into()));
     }
+    args.truth.check(args.driver.renderer == RendererArg::Reference)?;
     let lights = args.lights.parse()?;
     let progress = StderrProgress::new(args.quiet);
     let mut watch = Stopwatch::default();
@@ -241,6 +247,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let bytes = watch.time("encode", || encode(&rendered.picture, &view, args.precision()));
     let bytes = bytes.map_err(|reason| CliError::Write { path: args.output.clone(), reason })?;
     watch.time("write", || output::write(&args.output, &bytes))?;
+    write_error_image(args, rendered.standard_error.as_ref())?;
 
     let stats = RenderStats {
         schema: "specula-render-stats/1",
@@ -250,7 +257,8 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         renderer: if rendered.gpu.is_some() { "gpu" } else { "reference" },
         adapter: rendered.adapter,
         size_px: view.size_px.to_array(),
-        samples: if rendered.gpu.is_some() { args.driver.msaa } else { args.driver.samples },
+        samples: rendered.samples,
+        relative_error: rendered.relative_error,
         gpu: rendered.gpu,
         milliseconds: watch.stages(),
         warnings,
@@ -404,6 +412,9 @@ fn draw(
             environment: uploaded.features.environment,
         }),
         warnings: uploaded.warnings,
+        samples: args.driver.msaa,
+        standard_error: None,
+        relative_error: None,
     })
 }
 
@@ -414,13 +425,27 @@ fn trace(
     format: Format,
     (progress, watch): (&dyn Progress, &mut Stopwatch),
 ) -> Rendered {
-    let options = ReferenceOptions { samples: args.driver.samples.max(1), seed: 0, progress };
-    let radiance = watch.time("reference render", || render_reference(scene, view, &options));
+    let truth = watch.time("reference render", || estimate(scene, view, &args.truth.options(progress)));
     let picture = match format {
-        Format::Png => Picture::Display(to_srgb8(&radiance, view)),
-        Format::Exr => Picture::Radiance(radiance),
+        Format::Png => Picture::Display(to_srgb8(&truth.radiance, view)),
+        Format::Exr => Picture::Radiance(truth.radiance),
     };
-    Rendered { picture, adapter: None, gpu: None, warnings: Vec::new() }
+    Rendered {
+        picture,
+        adapter: None,
+        gpu: None,
+        warnings: args.truth.warning(truth.relative_error).into_iter().collect(),
+        samples: truth.samples,
+        standard_error: truth.standard_error,
+        relative_error: truth.relative_error,
+    }
+}
+
+fn write_error_image(args: &RenderArgs, standard_error: Option<&RadianceImage>) -> Result<(), CliError> {
+    let (Some(path), Some(image)) = (&args.truth.error_image, standard_error) else { return Ok(()) };
+    let bytes = output::exr(image, Precision::Float);
+    let bytes = bytes.map_err(|reason| CliError::Write { path: path.clone(), reason })?;
+    output::write(path, &bytes)
 }
 
 fn encode(picture: &Picture, view: &View, precision: Precision) -> Result<Vec<u8>, String> {

@@ -18,6 +18,8 @@ pub(super) struct RenderStats {
     pub(super) size_px: [u32; 2],
     /// Samples a pixel.
     pub(super) samples: u32,
+    /// Estimated standard error relative to the radiance, where the reference renderer was asked for it.
+    pub(super) relative_error: Option<f64>,
     pub(super) gpu: Option<GpuStats>,
     pub(super) milliseconds: Vec<Stage>,
     pub(super) warnings: Vec<String>,

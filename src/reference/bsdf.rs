@@ -8,9 +8,10 @@ use super::brdf::{
 };
 use super::microfacet::Distribution;
 use super::microfacet::fresnel::{F_Lazanyi, F_conductor};
+use super::techniques::Facets;
 use crate::math::spaces::orthonormal_basis;
 use crate::scene::{Geometry, MetalFresnel};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// What a material comes to at a point, textures and vertex colours multiplied in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,9 +167,14 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    /// Alpha of the specular lobe.
-    pub fn alpha(&self) -> f64 {
-        self.distribution.alphas().1
+    /// The facets of the specular lobe.
+    pub fn facets(&self) -> Facets {
+        let (alpha_x, alpha_y) = self.distribution.alphas();
+        Facets {
+            world_from_tangent: self.local_from_world.transpose(),
+            alpha: DVec2::new(alpha_x, alpha_y),
+            clearcoat_alpha: None,
+        }
     }
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.

@@ -7,8 +7,10 @@ pub mod albedo;
 pub mod brdf;
 pub mod bsdf;
 pub mod color;
+pub mod compensation;
 pub mod disney;
 pub mod environment;
+mod estimate;
 pub mod geometry;
 pub mod integrator;
 pub mod laws;
@@ -18,9 +20,12 @@ mod render;
 pub mod sampling;
 mod strokes;
 pub mod surface;
+pub mod techniques;
 #[cfg(test)]
 mod tests;
 pub mod texture;
+pub mod walk;
 
 pub use crate::math::quadrature;
+pub use estimate::{Estimate, EstimateOptions, REPLICATES, estimate};
 pub use render::{ReferenceOptions, render};

@@ -1,14 +1,15 @@
-//! The CPU renderer: primary rays, one pixel at a time, the same picture on any number of threads.
+//! The CPU renderer: rays through a pixel, and what they see.
 
 use super::bsdf::ModelChoices;
-use super::geometry::Ray;
-use super::integrator::Lighting;
+use super::estimate::{EstimateOptions, estimate};
+use super::geometry::{Hit, Ray};
+use super::integrator::{Lighting, PathDraws, Paths};
 use super::sampling::PixelSampler;
 use super::surface::World;
 use crate::progress::Progress;
 use crate::scene::{Background, Projection, RadianceImage, Scene, View};
-use glam::{DVec2, DVec3, DVec4, Vec4};
-use rayon::prelude::*;
+use glam::{DVec2, DVec3, DVec4, UVec2};
+use std::ops::Range;
 
 /// How a reference picture is made.
 #[derive(Clone, Copy)]
@@ -17,7 +18,7 @@ pub struct ReferenceOptions<'a> {
     pub samples: u32,
     /// The same seed gives the same picture.
     pub seed: u64,
-    /// Told about every finished row.
+    /// Told about what is done.
     pub progress: &'a dyn Progress,
 }
 
@@ -36,55 +37,78 @@ const DIMENSIONS_PER_LAYER: u32 = 3;
 
 /// Renders `scene` as docs/model.md defines it: box filter, no shadows, no interreflection.
 pub fn render(scene: &Scene, view: &View, options: &ReferenceOptions) -> RadianceImage {
-    let (width, height) = (view.size_px.x, view.size_px.y);
-    let choices = ModelChoices { energy_compensation: view.energy_compensation, geometry: view.geometry };
-    let tracer = Tracer { view, world: World::new(scene, view), lighting: Lighting::new(scene, choices) };
-    options.progress.begin("reference", u64::from(height));
-    let mut texels = vec![Vec4::ZERO; width as usize * height as usize];
-    texels.par_chunks_mut((width as usize).max(1)).zip(0..height).for_each(|(row, y)| {
-        for (texel, x) in row.iter_mut().zip(0..width) {
-            *texel = tracer.pixel(x, y, options).as_vec4();
-        }
-        options.progress.advance(1);
-    });
-    RadianceImage { width, height, texels }
+    let ReferenceOptions { samples, seed, progress } = *options;
+    estimate(scene, view, &EstimateOptions { samples, seed, progress, ..Default::default() }).radiance
 }
 
-struct Tracer<'a> {
+/// A scene and a view, ready to be looked at.
+pub(super) struct Tracer<'a> {
     view: &'a View,
     world: World<'a>,
     lighting: Lighting<'a>,
+    bounces: u32,
 }
 
-impl Tracer<'_> {
-    /// Radiance averaged over the pixel, multiplied with the coverage in w.
-    fn pixel(&self, x: u32, y: u32, options: &ReferenceOptions) -> DVec4 {
-        let sampler = PixelSampler::new(options.seed, x, y);
-        let corner = DVec2::new(f64::from(x), f64::from(y));
-        let samples = options.samples.max(1);
-        // A single sample is where a rasteriser takes it.
-        let place = |index| if samples == 1 { DVec2::splat(0.5) } else { sampler.pair(index, PIXEL_DIMENSION) };
-        let sum: DVec4 = (0..samples).map(|index| self.sample(corner + place(index), &sampler, index)).sum();
-        sum / f64::from(samples)
+/// A sum of samples.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Samples {
+    /// Radiance, multiplied with the coverage in w.
+    pub(super) radiance: DVec4,
+    /// Coverage by surfaces, without the background.
+    pub(super) surface: f64,
+}
+
+impl<'a> Tracer<'a> {
+    pub(super) fn new(scene: &'a Scene, view: &'a View, bounces: u32) -> Self {
+        let choices = ModelChoices { energy_compensation: view.energy_compensation, geometry: view.geometry };
+        Self { view, world: World::new(scene, view), lighting: Lighting::new(scene, choices), bounces }
     }
 
-    fn sample(&self, pixel: DVec2, sampler: &PixelSampler, index: u32) -> DVec4 {
+    /// The samples `indices` of a pixel, at `place` in it or spread over it.
+    pub(super) fn pixel(
+        &self,
+        pixel: UVec2,
+        sampler: &PixelSampler,
+        indices: Range<u32>,
+        place: Option<DVec2>,
+    ) -> Samples {
+        let mut sum = Samples::default();
+        for index in indices {
+            let place = place.unwrap_or_else(|| sampler.pair(index, PIXEL_DIMENSION));
+            let sample = self.sample(pixel.as_dvec2() + place, sampler, index);
+            sum.radiance += sample.radiance;
+            sum.surface += sample.surface;
+        }
+        sum
+    }
+
+    fn sample(&self, pixel: DVec2, sampler: &PixelSampler, index: u32) -> Samples {
         let ray = self.ray(pixel);
         let mut radiance = DVec3::ZERO;
         let mut transmittance = 1.0;
         for (layer, depth) in self.world.layers(&ray).iter().zip(0..) {
-            let first = PIXEL_DIMENSION + 1 + depth * DIMENSIONS_PER_LAYER;
-            let draws = [0, 1, 2].map(|dimension| sampler.pair(index, first + dimension));
-            let surface = self.world.surface(&layer.hit);
-            radiance += self.lighting.radiance(&surface, -ray.direction, &draws) * (layer.alpha * transmittance);
+            radiance += self.layer(&layer.hit, &ray, (sampler, index, depth)) * (layer.alpha * transmittance);
             transmittance *= 1.0 - layer.alpha;
         }
-        match self.view.background {
+        let surface = 1.0 - transmittance;
+        let radiance = match self.view.background {
             Background::Environment => {
                 (radiance + self.lighting.environment_radiance(ray.direction) * transmittance).extend(1.0)
             }
-            Background::Transparent | Background::Color(_) => radiance.extend(1.0 - transmittance),
+            Background::Transparent | Background::Color(_) => radiance.extend(surface),
+        };
+        Samples { radiance, surface }
+    }
+
+    /// Radiance that one of the surfaces along the ray sends back.
+    fn layer(&self, hit: &Hit, ray: &Ray, (sampler, index, depth): (&PixelSampler, u32, u32)) -> DVec3 {
+        if self.bounces > 0 {
+            let paths = Paths { world: &self.world, lighting: &self.lighting, bounces: self.bounces };
+            return paths.radiance(hit, ray, &PathDraws { sampler, index, layer: depth });
         }
+        let first = PIXEL_DIMENSION + 1 + depth * DIMENSIONS_PER_LAYER;
+        let draws = [0, 1, 2].map(|dimension| sampler.pair(index, first + dimension));
+        self.lighting.radiance(&self.world.surface(hit), -ray.direction, &draws)
     }
 
     /// The ray through a point of the picture, between the camera's near and far planes.

@@ -2,7 +2,7 @@
 
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
-use super::brdf::{D_GGX, G1_GGX};
+use super::microfacet::distribution::{D_GGX_anisotropic, Lambda_GGX_anisotropic};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -75,9 +75,10 @@ pub fn pdf_cosine_hemisphere(NoL: f64) -> f64 {
 }
 
 /// A microfacet normal among those that `v` sees (Heitz 2018, "Sampling the GGX Distribution of Visible Normals", in the
-/// spherical-cap form of Dupuy and Benyoub 2023). Local frame, surface normal +Z; `v` is a unit vector with v.z > 0.
-pub fn sample_visible_normal(alpha: f64, v: DVec3, u: DVec2) -> DVec3 {
-    let stretch = DVec3::new(alpha, alpha, 1.0);
+/// spherical-cap form of Dupuy and Benyoub 2023). Tangent frame: `alpha` along +X and +Y, surface normal +Z; `v` is a unit
+/// vector. It may point below the horizon, as light does that was scattered upward among facets.
+pub fn sample_visible_normal(alpha: DVec2, v: DVec3, u: DVec2) -> DVec3 {
+    let stretch = alpha.extend(1.0);
     let v = (v * stretch).normalize();
     // Mirror images of v on a unit sphere of facets fill the cap z > -v.z evenly; the facet bisects.
     let z = (1.0 - u.x) * (1.0 + v.z) - v.z;
@@ -87,19 +88,21 @@ pub fn sample_visible_normal(alpha: f64, v: DVec3, u: DVec2) -> DVec3 {
 }
 
 /// Density, 1/sr, of the directions `l` in which `v` is mirrored by [`sample_visible_normal`]: G1 D / (4 NoV)
-/// (Heitz 2018, equations 3 and 17). Local frame, both unit, v.z > 0.
-pub fn pdf_visible_normal_reflection(alpha: f64, v: DVec3, l: DVec3) -> f64 {
-    let NoH = (l + v).normalize_or_zero().z;
-    if NoH <= 0.0 {
+/// (Heitz 2018, equations 3 and 17). Tangent frame, both unit, v.z > 0.
+pub fn pdf_visible_normal_reflection(alpha: DVec2, v: DVec3, l: DVec3) -> f64 {
+    let h = (l + v).normalize_or_zero();
+    if h.z <= 0.0 {
         return 0.0;
     }
-    G1_GGX(alpha, v.z) * D_GGX(alpha, NoH) / (4.0 * v.z)
+    let D = D_GGX_anisotropic(alpha.x, alpha.y, h.x, h.y, h.z);
+    D / (4.0 * v.z * (1.0 + Lambda_GGX_anisotropic(alpha.x, alpha.y, v.x, v.y, v.z)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::tests::chi_square_of_directions;
+    use crate::reference::tests::{ChiSquare, chi_square_of_directions};
+    use glam::Vec2Swizzles;
 
     #[test]
     fn pairs_are_stratified_in_every_elementary_interval() {
@@ -131,16 +134,36 @@ mod tests {
         assert!(chi.is_plausible(), "{chi:?}");
     }
 
+    /// Chi-square of the directions in which mirrored light leaves.
+    fn chi_square_of_mirrored(alpha: DVec2, v: DVec3, pdf_alpha: DVec2) -> ChiSquare {
+        let sample = |u| {
+            let h = sample_visible_normal(alpha, v, u);
+            2.0 * v.dot(h) * h - v
+        };
+        chi_square_of_directions(sample, |l| pdf_visible_normal_reflection(pdf_alpha, v, l))
+    }
+
+    fn direction(cos: f64, azimuth_rad: f64) -> DVec3 {
+        (DVec2::from_angle(azimuth_rad) * (1.0 - cos * cos).sqrt()).extend(cos)
+    }
+
     #[test]
     fn mirrored_visible_normals_follow_their_density() {
         for (alpha, cos_v) in [(0.15, 0.9), (0.15, 0.2), (0.5, 0.6), (1.0, 0.05)] {
-            let v = DVec3::new(-(1.0_f64 - cos_v * cos_v).sqrt(), 0.0, cos_v);
-            let sample = |u| {
-                let h = sample_visible_normal(alpha, v, u);
-                2.0 * v.dot(h) * h - v
-            };
-            let chi = chi_square_of_directions(sample, |l| pdf_visible_normal_reflection(alpha, v, l));
+            let alpha = DVec2::splat(alpha);
+            let chi = chi_square_of_mirrored(alpha, direction(cos_v, PI), alpha);
             assert!(chi.is_plausible(), "alpha {alpha}, NoV {cos_v}: {chi:?}");
+        }
+    }
+
+    #[test]
+    fn mirrored_visible_normals_of_anisotropic_facets_follow_their_density() {
+        for (x, y, cos_v, azimuth) in [(0.8, 0.15, 0.7, 0.3), (0.2, 1.0, 0.3, 2.0), (0.4, 0.2, 0.1, -1.1)] {
+            let (alpha, v) = (DVec2::new(x, y), direction(cos_v, azimuth));
+            let chi = chi_square_of_mirrored(alpha, v, alpha);
+            assert!(chi.is_plausible(), "{alpha}, NoV {cos_v}: {chi:?}");
+            let exchanged = chi_square_of_mirrored(alpha, v, alpha.yx());
+            assert!(!exchanged.is_plausible(), "{alpha} exchanged, NoV {cos_v}: {exchanged:?}");
         }
     }
 

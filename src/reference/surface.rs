@@ -4,7 +4,7 @@ use super::bsdf::{Anisotropy, SurfaceMaterial, dielectric_reflectance};
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
 use crate::math::spaces::orthonormal_basis;
-use crate::scene::{AlphaMode, Disney, Material, Scene, TextureSlot, View};
+use crate::scene::{AlphaMode, Disney, Material, Scene, TextureSlot, Topology, View};
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 
 /// A visible point, ready for light.
@@ -67,6 +67,35 @@ impl<'a> World<'a> {
         let visible = layers.iter().position(|layer| layer.alpha >= 1.0).map_or(layers.len(), |first| first + 1);
         layers.truncate(visible);
         layers
+    }
+
+    /// Share of light that passes along the ray, in [0, 1]. Surfaces are where a viewer on the ray would see them.
+    pub fn transmittance(&self, ray: &Ray) -> f64 {
+        let mut transmittance = 1.0;
+        self.geometry.visit_hits(ray, |hit| {
+            transmittance *= 1.0 - self.alpha(&hit);
+            // Nothing is left to be found.
+            (transmittance <= 0.0).then_some(ray.t_min)
+        });
+        transmittance
+    }
+
+    /// The surface that one photon along the ray meets: `u` in (0, 1) decides at blended ones.
+    pub fn meets(&self, ray: &Ray, mut u: f64) -> Option<Hit> {
+        for layer in self.layers(ray) {
+            if u < layer.alpha {
+                return Some(layer.hit);
+            }
+            u = (u - layer.alpha) / (1.0 - layer.alpha);
+        }
+        None
+    }
+
+    /// Unit normal of the triangle, on the side that the ray comes from. `None` for points and lines, which are round.
+    pub fn facet_normal(&self, hit: &Hit, ray: &Ray) -> Option<DVec3> {
+        let is_area = self.geometry.draw(hit).primitive.topology == Topology::Triangles;
+        let normal = self.geometry.triangles[hit.triangle].normal().try_normalize().filter(|_| is_area)?;
+        Some(if normal.dot(ray.direction) > 0.0 { -normal } else { normal })
     }
 
     /// Coverage of a hit, as its material's alpha mode has it, in [0, 1].
@@ -172,7 +201,7 @@ impl Point<'_> {
     /// The shading normal on the side of the viewer.
     fn shading_normal(&self) -> DVec3 {
         let normal = self.front_normal();
-        let is_area = self.draw.primitive.topology == crate::scene::Topology::Triangles;
+        let is_area = self.draw.primitive.topology == Topology::Triangles;
         if is_area && !self.hit.front { -normal } else { normal }
     }
 

@@ -7,8 +7,9 @@ use super::{
     G1_SmithGGX, Schlick_weight, alpha_of_clearcoat, alpha_of_masking, alphas, specular_f0, tint,
 };
 use crate::reference::bsdf::SMALLEST_NOV;
+use crate::reference::techniques::Facets;
 use crate::scene::Disney;
-use glam::DVec3;
+use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// A material with all of its parameters, textures and vertex colours multiplied in.
@@ -82,14 +83,14 @@ impl DisneyBsdf {
         }
     }
 
-    /// Alpha of an isotropic lobe as wide as the specular one.
-    pub fn alpha(&self) -> f64 {
-        (self.alphas.0 * self.alphas.1).sqrt()
-    }
-
-    /// Alpha of the clearcoat, if there is one.
-    pub fn clearcoat_alpha(&self) -> Option<f64> {
-        (self.clearcoat > 0.0).then_some(self.clearcoat_alpha)
+    /// The facets of the specular lobe and of the clearcoat, if there is one.
+    pub fn facets(&self) -> Facets {
+        let TangentFrame { tangent, bitangent, normal } = self.frame;
+        Facets {
+            world_from_tangent: DMat3::from_cols(tangent, bitangent, normal),
+            alpha: DVec2::new(self.alphas.0, self.alphas.1),
+            clearcoat_alpha: (self.clearcoat > 0.0).then_some(self.clearcoat_alpha),
+        }
     }
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.

@@ -1,5 +1,6 @@
 //! What the reference's tests share: small scenes, and a chi-square test for samplers.
 
+mod paths;
 mod pictures;
 
 use super::sampling::PixelSampler;
