@@ -3,7 +3,7 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
-use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail};
+use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{FramePlan, plan};
 use crate::gpu::formats;
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
@@ -77,6 +77,7 @@ impl Renderer {
             shared: SharedTextures {
                 dfg: table(&dfg::TABLE).upload(device, queue),
                 fresnel_tail: table(&fresnel_tail::TABLE).upload(device, queue),
+                taps: table(&taps::TABLE).upload(device, queue),
                 clamp_sampler,
             },
             forward: ForwardPipelines::default(),
