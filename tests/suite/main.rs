@@ -11,4 +11,5 @@ mod lit_plane;
 mod mutants;
 mod shaders;
 mod support;
+mod tiers;
 mod twins;
