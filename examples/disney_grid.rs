@@ -86,6 +86,7 @@ fn view(cell_px: u32) -> View {
         background: Background::Color(Vec3::splat(0.11)),
         energy_compensation: true,
         geometry: Default::default(),
+        quality: Default::default(),
     }
 }
 

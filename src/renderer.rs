@@ -3,7 +3,7 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
-use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail};
+use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{FramePlan, plan};
 use crate::gpu::formats;
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
@@ -191,6 +191,7 @@ pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> Sha
     SharedTextures {
         dfg: table(&dfg::TABLE).upload(device, queue),
         fresnel_tail: table(&fresnel_tail::TABLE).upload(device, queue),
+        taps: table(&taps::TABLE).upload(device, queue),
         clamp_sampler,
     }
 }

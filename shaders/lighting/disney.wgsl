@@ -27,6 +27,8 @@ struct Lobes {
     // Schlick's curve goes from F0 to 1.
     F0: vec3f,
     masking: f32,
+    // Of the specular lobe, for light that is seen elsewhere too.
+    specular_share: f32,
     diffuse: vec3f,
     subsurface: f32,
     sheen: vec3f,
@@ -59,6 +61,7 @@ fn make_lobes(surface: Surface) -> Lobes {
     lobes.alpha_x = max(r * r / aspect, DISNEY_ALPHA_MIN);
     lobes.alpha_y = max(r * r * aspect, DISNEY_ALPHA_MIN);
     lobes.masking = (0.5 + 0.5 * r) * (0.5 + 0.5 * r);
+    lobes.specular_share = 1.0;
     lobes.F0 = mix(dielectric_F0, surface.base_color, surface.metallic);
     lobes.diffuse = surface.base_color * (1.0 - surface.metallic);
     lobes.subsurface = disney.subsurface;
@@ -70,6 +73,17 @@ fn make_lobes(surface: Surface) -> Lobes {
     return lobes;
 }
 
+// The lobes for a light that is a disc: wider by the variance that it adds to alpha^2, with a share of the specular one.
+// GTR1 takes the same, though its tail is longer.
+fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
+    var disc = lobes;
+    disc.alpha_x = sqrt(lobes.alpha_x * lobes.alpha_x + variance);
+    disc.alpha_y = sqrt(lobes.alpha_y * lobes.alpha_y + variance);
+    disc.clearcoat_alpha = sqrt(lobes.clearcoat_alpha * lobes.clearcoat_alpha + variance);
+    disc.specular_share = specular_share;
+    return disc;
+}
+
 // BRDF times the cosine of the light, 1/sr. `l` is a unit vector toward the light; zero when it is below the horizon.
 fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let NoL = saturate(dot(lobes.n, l));
@@ -79,7 +93,7 @@ fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
 
     // Masking of the light is G1(NoL) / NoL, and the cosine of the light cancels against it.
     let D = D_GGX_anisotropic(lobes.alpha_x, lobes.alpha_y, lobes.t, lobes.b, lobes.n, h);
-    let specular = F_Schlick(lobes.F0, 1.0, LoH) * (D * lobes.seen * G1_SmithGGX(lobes.masking, NoL));
+    let specular = F_Schlick(lobes.F0, 1.0, LoH) * (D * lobes.specular_share * lobes.seen * G1_SmithGGX(lobes.masking, NoL));
 
     let coat_F = mix(CLEARCOAT_F0, 1.0, F_Schlick_weight(LoH));
     let coat_D = D_GTR1(lobes.clearcoat_alpha, lobes.n, h);

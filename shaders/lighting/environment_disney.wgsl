@@ -1,5 +1,6 @@
 #import "lighting/disney_albedo.wgsl"
 #import "lighting/prefiltered.wgsl"
+#import <suns>
 
 // Reflections that stand for a lobe that is longer than wide.
 const TAPS: i32 = 15;
@@ -15,13 +16,15 @@ fn specular_radiance(lobes: Lobes, to_environment: mat3x3f) -> vec3f {
     let step = 2.0 / f32(TAPS);
     // Wide enough to meet its neighbours.
     let alpha = sqrt(lobes.alpha_y * lobes.alpha_y + excess * step * step * 0.25);
+    // The mirror level, which holds the suns, is read to the share that `sun_radiance` leaves.
+    let least_r = min(lobes.perceptual_roughness, 1.0 / environment.level_scale);
     var sum = vec4f(0.0);
     for (var i = 0; i < TAPS; i++) {
         let c = (f32(i) + 0.5) * step - 1.0;
         let h = normalize(lobes.n + lobes.t * (sqrt(excess / (1.0 - c * c)) * c));
         let l = reflect(-lobes.v, h);
         let weight = saturate(dot(lobes.v, h)) * G1_SmithGGX(lobes.masking, saturate(dot(lobes.n, l))) / dot(lobes.n, h);
-        sum += vec4f(prefiltered_radiance(to_environment * l, min(sqrt(alpha), 1.0)), 1.0) * weight;
+        sum += vec4f(prefiltered_radiance(to_environment * l, clamp(sqrt(alpha), least_r, 1.0)), 1.0) * weight;
     }
     return sum.xyz / max(sum.w, 1e-12);
 }
@@ -45,5 +48,5 @@ fn environment_radiance(lobes: Lobes) -> vec3f {
     let albedo = E_disney_smooth(r, lobes.NoV);
     let smooth_part = lobes.diffuse * mix(albedo.x, albedo.y, lobes.subsurface) + lobes.sheen * albedo.z;
     let E_over_pi = irradiance_over_pi_sh(environment.irradiance_over_pi, to_environment * lobes.n);
-    return smooth_part * E_over_pi + specular + coat;
+    return smooth_part * E_over_pi + specular + coat + sun_radiance(lobes);
 }

@@ -20,6 +20,10 @@ struct Lobes {
     perceptual_roughness: f32,
     shape: Shape,
     fresnel: Fresnel,
+    // Of the specular lobe, for light that is seen elsewhere too.
+    specular_share: f32,
+    // Scale and bias of the specular lobe's albedo.
+    split_sum: vec2f,
     // What the specular lobe returns of uniform light in one bounce.
     single_scatter: vec3f,
     // F_ms (1 - E(NoV)), dielectric and metal computed apart and then mixed: F_ms is not linear in F0.
@@ -57,6 +61,8 @@ fn make_lobes(surface: Surface) -> Lobes {
     lobes.perceptual_roughness = r;
     lobes.shape = shape;
     lobes.fresnel = make_fresnel(surface, dielectric_F0);
+    lobes.specular_share = 1.0;
+    lobes.split_sum = table.xy;
     lobes.single_scatter = single_scatter(lobes.fresnel, table, table_r, NoV);
     lobes.multiscatter = mix(dielectric_F_ms, metal_F_ms, surface.metallic) * max(1.0 - E, 0.0);
     lobes.multiscatter_norm = INV_PI / max(1.0 - E_avg, LOSS_MIN);
@@ -71,6 +77,14 @@ fn make_lobes(surface: Surface) -> Lobes {
     return lobes;
 }
 
+// The lobes for a light that is a disc: wider by the variance that it adds to alpha^2, with a share of the specular one.
+fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
+    var disc = lobes;
+    disc.shape = widened(lobes.shape, variance);
+    disc.specular_share = specular_share;
+    return disc;
+}
+
 // BRDF times the cosine of the light, 1/sr. `l` is a unit vector toward the light; zero when it is below the horizon.
 fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let NoL = saturate(dot(lobes.n, l));
@@ -78,7 +92,7 @@ fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let h = half_vector * inverseSqrt(max(dot(half_vector, half_vector), 1e-12));
     let VoH = saturate(dot(lobes.v, h));
     let F = reflectance(lobes.fresnel, VoH);
-    let DV = D_V(lobes.shape, lobes.n, lobes.v, l, h, lobes.NoV, NoL);
+    let DV = D_V(lobes.shape, lobes.n, lobes.v, l, h, lobes.NoV, NoL) * lobes.specular_share;
 
     let table = dfg(albedo_perceptual_roughness(lobes.shape, lobes.perceptual_roughness, l), NoL);
     let loss = max(1.0 - table.x - table.y, 0.0);

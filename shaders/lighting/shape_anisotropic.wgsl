@@ -23,6 +23,14 @@ fn make_shape(surface: Surface, alpha: f32) -> Shape {
     return Shape(alpha, alpha_t, surface.tangents.t, 0.5 * (t2 + b2), surface.tangents.b, (t2 - b2) / (t2 + b2));
 }
 
+// As seen by a light that is a disc. The tables of albedo stay.
+fn widened(shape: Shape, variance: f32) -> Shape {
+    var wider = shape;
+    wider.alpha = sqrt(shape.alpha * shape.alpha + variance);
+    wider.alpha_t = sqrt(shape.alpha_t * shape.alpha_t + variance);
+    return wider;
+}
+
 // D V of the specular lobe.
 fn D_V(shape: Shape, n: vec3f, v: vec3f, l: vec3f, h: vec3f, NoV: f32, NoL: f32) -> f32 {
     let D = D_GGX_anisotropic(shape.alpha_t, shape.alpha, shape.t, shape.b, n, h);

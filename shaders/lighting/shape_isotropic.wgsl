@@ -10,6 +10,11 @@ fn make_shape(surface: Surface, alpha: f32) -> Shape {
     return Shape(alpha);
 }
 
+// As seen by a light that is a disc.
+fn widened(shape: Shape, variance: f32) -> Shape {
+    return Shape(sqrt(shape.alpha * shape.alpha + variance));
+}
+
 // D V of the specular lobe.
 fn D_V(shape: Shape, n: vec3f, v: vec3f, l: vec3f, h: vec3f, NoV: f32, NoL: f32) -> f32 {
     return D_GGX(shape.alpha, n, h) * visibility(shape.alpha, NoV, NoL);

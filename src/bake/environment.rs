@@ -5,6 +5,7 @@ use super::irradiance::irradiance_over_pi;
 use super::lobe::legendre_coefficients;
 use super::octahedral::{Atlas, texel_mean};
 use super::panorama::Panorama;
+use super::sun;
 use crate::math::spaces::direction_from_octahedral;
 use crate::progress::Progress;
 use crate::scene::{EnvironmentImage, EnvironmentMaps};
@@ -27,18 +28,21 @@ const SMALLEST_SIDE: u32 = 32;
 pub struct BakeOptions {
     /// Upper bound for the side of the mirror level, texels; at least 32, rounded down to a power of two.
     pub max_side: u32,
+    /// Take suns out of the panorama ([`sun::extract`]), to be shaded as lights. Without, the maps are those of the plain
+    /// split sum.
+    pub suns: bool,
 }
 
 impl Default for BakeOptions {
     fn default() -> Self {
-        Self { max_side: LARGEST_SIDES[0] }
+        Self { max_side: LARGEST_SIDES[0], suns: true }
     }
 }
 
 /// Prefilters `image` for shading.
 ///
 /// Level k of the specular maps holds int L(l) D(h) NoL dl / int D(h) NoL dl with n = v = r and perceptual roughness
-/// k / 8 (Karis 2013); L is [`EnvironmentImage::radiance`]. The convolution is carried out per spherical harmonic, in
+/// k / 8 (Karis 2013); L is [`EnvironmentImage::radiance`], from level 1 on without the suns that were taken out. The convolution is carried out per spherical harmonic, in
 /// float64, and the result is the same on every run. Radiance in cd/m2, as in the image.
 pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Progress) -> EnvironmentMaps {
     progress.begin("Prefiltering the environment", LEVELS as u64 + 1);
@@ -47,6 +51,8 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
     fill_mirror_level(&mut atlas, image);
     progress.advance(1);
 
+    let extracted = options.suns.then(|| sun::extract(image));
+    let (image, suns) = extracted.as_ref().map_or((image, &[][..]), |found| (&found.residual, &found.suns));
     let harmonics = analyse(image);
     progress.advance(1);
     for level in 1..LEVELS {
@@ -58,6 +64,7 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
         progress.advance(1);
     }
     EnvironmentMaps {
+        suns: suns.to_vec(),
         irradiance_over_pi: irradiance_over_pi(image),
         tiles: atlas.tiles,
         atlas_width: atlas.width,

@@ -10,12 +10,16 @@ mod lobe;
 mod octahedral;
 mod panorama;
 pub mod studio;
+pub mod sun;
 mod table;
+pub mod taps;
+#[cfg(test)]
+mod test_support;
 
 pub use table::EmbeddedTable;
 
 /// Every table that is part of the library.
-pub const TABLES: [EmbeddedTable; 3] = [dfg::TABLE, fresnel_tail::TABLE, disney::TABLE];
+pub const TABLES: [EmbeddedTable; 4] = [dfg::TABLE, fresnel_tail::TABLE, disney::TABLE, taps::TABLE];
 
 #[cfg(test)]
 mod tests {

@@ -10,7 +10,7 @@ use super::overrides;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
 use super::truth::TruthArgs;
-use crate::bake::environment;
+use crate::bake::environment::{self, BakeOptions};
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, submit};
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
@@ -19,7 +19,7 @@ use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
-use crate::scene::{Background, EnvironmentMaps, Geometry, RadianceImage, Scene, ToneMap, View};
+use crate::scene::{Background, EnvironmentMaps, Geometry, Quality, RadianceImage, Scene, ToneMap, View};
 use glam::{UVec2, Vec3};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -93,6 +93,9 @@ struct LookArgs {
     /// How microfacets hide each other, for punctual lights.
     #[arg(long, value_name = "MODEL", default_value = "smith-correlated", value_parser = parse_geometry)]
     geometry: Geometry,
+    /// Time against error of light from the environment: split-sum (the baseline), draft, standard or high.
+    #[arg(long, value_name = "TIER", default_value = "standard", value_parser = parse_quality)]
+    quality: Quality,
 }
 
 #[derive(Debug, clap::Args)]
@@ -179,6 +182,11 @@ fn parse_size(text: &str) -> Result<UVec2, String> {
 fn parse_geometry(text: &str) -> Result<Geometry, String> {
     let names = || Geometry::ALL.map(Geometry::name).join(", ");
     Geometry::by_name(text).ok_or_else(|| format!("expected one of {}", names()))
+}
+
+fn parse_quality(text: &str) -> Result<Quality, String> {
+    let names = || Quality::ALL.map(Quality::name).join(", ");
+    Quality::by_name(text).ok_or_else(|| format!("expected one of {}", names()))
 }
 
 fn parse_background(text: &str) -> Result<Background, String> {
@@ -323,6 +331,7 @@ impl RenderArgs {
             background,
             energy_compensation: self.look.energy_compensation == Switch::On,
             geometry: self.look.geometry,
+            quality: self.look.quality,
         })
     }
 }
@@ -350,9 +359,10 @@ fn open_gpu(args: &DriverArgs, wanted: RendererArg, warnings: &mut Vec<String>) 
     }
 }
 
-fn bake_maps(scene: &Scene, progress: &dyn Progress) -> Option<EnvironmentMaps> {
+fn bake_maps(scene: &Scene, quality: Quality, progress: &dyn Progress) -> Option<EnvironmentMaps> {
+    let options = BakeOptions { suns: quality.parts_suns(), ..Default::default() };
     let environment = scene.environment.as_ref().filter(|environment| environment.intensity > 0.0)?;
-    Some(environment::bake(&environment.image, &Default::default(), progress))
+    Some(environment::bake(&environment.image, &options, progress))
 }
 
 fn draw(
@@ -365,7 +375,7 @@ fn draw(
 ) -> Result<Rendered, CliError> {
     let options = CaptureOptions { samples: args.driver.msaa, precision: args.precision() };
     let target = CaptureTarget::new(gpu, view, options)?;
-    let maps = watch.time("environment bake", || bake_maps(scene, progress));
+    let maps = watch.time("environment bake", || bake_maps(scene, view.quality, progress));
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
         let renderer = Renderer::new(device, queue);

@@ -49,6 +49,7 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
                 vertex: drawable.vertex_features,
                 energy_compensation: view.energy_compensation,
                 geometry: view.geometry,
+                quality: view.quality,
                 topology: drawable.topology,
             };
             let cull_back = !features.material.double_sided && drawable.topology == Topology::Triangles;

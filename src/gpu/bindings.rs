@@ -15,6 +15,7 @@ pub const FRAME_LIGHTS: u32 = 4;
 pub const FRAME_ENVIRONMENT: u32 = 5;
 pub const FRAME_ATLAS: u32 = 6;
 pub const FRAME_FRESNEL_TAIL: u32 = 7;
+pub const FRAME_TAPS: u32 = 8;
 
 /// Group 0 of the forward pass: what the scene's light needs is bound, the rest has no binding.
 pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
@@ -32,6 +33,7 @@ pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
         entries.extend([
             buffer(FRAME_ENVIRONMENT, ShaderStages::FRAGMENT, BufferBindingType::Uniform),
             texture(FRAME_ATLAS, true),
+            texture(FRAME_TAPS, true),
         ]);
     }
     if features.is_lit() && features.fresnel_tail {

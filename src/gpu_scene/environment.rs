@@ -2,7 +2,7 @@
 
 use super::UploadError;
 use crate::gpu::formats;
-use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps};
+use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS};
 use crate::shader::types::EnvironmentUniform;
 use glam::{DMat3, Vec3};
 use half::f16;
@@ -47,7 +47,11 @@ impl GpuEnvironment {
             let [x, y] = tile.origin.map(|texel| texel as f32);
             *out = [x / width, y / height, tile.size as f32 / width, tile.size as f32 / height];
         }
+        let (suns, sun_illuminance) = suns(maps, environment);
         let uniform = EnvironmentUniform {
+            sun_count: maps.suns.len().min(MAX_SUNS) as u32,
+            suns,
+            sun_illuminance,
             irradiance_over_pi: maps.irradiance_over_pi.map(|c| (c * intensity).as_vec3().extend(0.0).to_array()),
             tiles,
             environment_from_world: columns(environment_from_world),
@@ -86,6 +90,21 @@ impl GpuEnvironment {
         self.panorama = Some(panorama.clone());
         Ok(panorama)
     }
+}
+
+/// Directions in the world with what each disc adds to alpha squared, and illuminances.
+///
+/// A disc's points are spread about its middle with the variance R^2 / 4 along each axis, half vectors with a quarter of
+/// that, and near its peak GGX with alpha^2 + 4 s^2 is GGX convolved with a variance of s^2.
+fn suns(maps: &EnvironmentMaps, environment: &Environment) -> ([[f32; 4]; MAX_SUNS], [[f32; 4]; MAX_SUNS]) {
+    let (mut directions, mut illuminances) = ([[0.0; 4]; MAX_SUNS], [[0.0; 4]; MAX_SUNS]);
+    for (i, sun) in maps.suns.iter().take(MAX_SUNS).enumerate() {
+        let widening = 0.25 * sun.angular_radius_rad * sun.angular_radius_rad;
+        let toward = environment.world_from_environment(sun.direction);
+        directions[i] = toward.extend(widening).as_vec4().to_array();
+        illuminances[i] = (sun.illuminance * environment.intensity).extend(0.0).as_vec4().to_array();
+    }
+    (directions, illuminances)
 }
 
 /// A rotation as the columns of a WGSL mat3x3f.

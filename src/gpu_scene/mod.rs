@@ -65,6 +65,7 @@ pub struct GpuScene {
 pub struct SharedTextures {
     pub dfg: wgpu::TextureView,
     pub fresnel_tail: wgpu::TextureView,
+    pub taps: wgpu::TextureView,
     pub clamp_sampler: wgpu::Sampler,
 }
 
@@ -78,7 +79,8 @@ impl GpuScene {
         maps: Option<&EnvironmentMaps>,
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
-        let features = SceneFeatures::of(scene);
+        let mut features = SceneFeatures::of(scene);
+        features.suns = features.environment && maps.is_some_and(|maps| !maps.suns.is_empty());
         let drawables = Drawables::new(scene, features);
         let bounds = scene.bounds();
         let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
@@ -142,6 +144,7 @@ impl GpuScene {
         if let Some(environment) = &self.environment {
             entries.push(entry(bindings::FRAME_ENVIRONMENT, environment.uniform.as_entire_binding()));
             entries.push(entry(bindings::FRAME_ATLAS, wgpu::BindingResource::TextureView(&environment.atlas)));
+            entries.push(entry(bindings::FRAME_TAPS, wgpu::BindingResource::TextureView(&shared.taps)));
         }
         if self.features.is_lit() && self.features.fresnel_tail {
             let tail = wgpu::BindingResource::TextureView(&shared.fresnel_tail);

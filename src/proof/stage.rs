@@ -3,14 +3,16 @@
 
 use super::ProofError;
 use super::sources::SOURCES;
-use crate::scene::{Geometry, Material, Primitive, Scene, Texture, TextureRef, TextureSlot, Topology, UvTransform};
+use crate::scene::{
+    Geometry, Material, Primitive, Quality, Scene, Texture, TextureRef, TextureSlot, Topology, UvTransform,
+};
 use crate::shader::{
     ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Slot, Slots, VertexFeatures, forward_slots,
 };
 use std::fmt::Write;
 
 /// Where the table of the Disney lobes is bound, which a frame has in its material's group.
-pub(super) const DISNEY_TABLE: u32 = 8;
+pub(super) const DISNEY_TABLE: u32 = 9;
 
 /// Files whose bindings become private variables.
 const UNBOUND: [(&str, &str); 2] = [
@@ -120,12 +122,13 @@ fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
         vertex,
         energy_compensation: true,
         geometry: Geometry::default(),
+        quality: Quality::default(),
         topology: Topology::Triangles,
     }
 }
 
 /// One bounce, one light: what a lobe is proven by.
 pub(super) fn plain_metal() -> ForwardFeatures {
-    let scene = SceneFeatures { punctual: true, environment: false, fresnel_tail: false };
+    let scene = SceneFeatures { punctual: true, environment: false, suns: false, fresnel_tail: false };
     ForwardFeatures { energy_compensation: false, ..features(scene, Material::default()) }
 }

@@ -116,7 +116,6 @@ mod tests {
             }
         }
         let [none, kulla_conty, turquin, fdez_aguera] = squares.map(f64::sqrt);
-        println!("none {none:.4} KC {kulla_conty:.4} Turquin {turquin:.4} FA {fdez_aguera:.4}");
         assert!(kulla_conty < turquin && kulla_conty < fdez_aguera && turquin < none);
     }
 }

@@ -58,10 +58,29 @@ impl Environment {
         self.image.radiance(self.environment_from_world(direction_in_world)) * self.intensity
     }
 
+    /// Turns a direction in the panorama's own frame into the world.
+    pub fn world_from_environment(&self, direction: DVec3) -> DVec3 {
+        glam::DQuat::from_rotation_y(self.rotation_rad) * direction
+    }
+
     /// Turns a world direction into the panorama's own frame.
     pub fn environment_from_world(&self, direction_in_world: DVec3) -> DVec3 {
         glam::DQuat::from_rotation_y(-self.rotation_rad) * direction_in_world
     }
+}
+
+/// Most suns that an environment has.
+pub const MAX_SUNS: usize = 4;
+
+/// A small bright source of a panorama, shaded as a light of its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sun {
+    /// Unit vector toward it, in the panorama's own frame.
+    pub direction: DVec3,
+    /// Lux per channel on a surface that faces it.
+    pub illuminance: DVec3,
+    /// Of the disc that is as wide, rad.
+    pub angular_radius_rad: f64,
 }
 
 /// Where one prefiltered level lies inside [`EnvironmentMaps::texels`].
@@ -79,6 +98,10 @@ pub struct SpecularTile {
 /// and one bilinear tap reads one level. A border of one texel around each tile repeats the octahedron's neighbours.
 #[derive(Debug, Clone)]
 pub struct EnvironmentMaps {
+    /// Sources that the maps do not hold, at most [`MAX_SUNS`]: the irradiance and the levels from the second on are of
+    /// the rest. The mirror level is of the whole panorama. Between the two, the share of the second level is the share
+    /// of the suns that is shaded.
+    pub suns: Vec<Sun>,
     /// Irradiance / pi as spherical harmonics of degree 2, coefficients premultiplied with the basis constants and the
     /// cosine lobe (Ramamoorthi and Hanrahan 2001): evaluated as
     /// c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2).

@@ -105,6 +105,7 @@ pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
         background: Background::Color(Vec3::splat(0.16)),
         energy_compensation: true,
         geometry: Geometry::default(),
+        quality: Default::default(),
     }
 }
 

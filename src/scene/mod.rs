@@ -18,13 +18,13 @@ mod view;
 
 pub use camera::{Camera, Projection};
 pub use disney::Disney;
-pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, SpecularTile};
+pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile, Sun};
 pub use image::{Encoding, Image, Picture, Pixels, RadianceImage, Sampler, Texture, Wrap};
 pub use light::{Light, LightInWorld, LightKind};
 pub use material::{AlphaMode, Material, MetalFresnel, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};
 pub use spot_cone::SpotCone;
-pub use view::{Background, Geometry, ToneMap, View};
+pub use view::{Background, Geometry, Quality, ToneMap, View};
 
 use glam::{DMat4, DVec3};
 

@@ -72,6 +72,46 @@ impl Geometry {
     }
 }
 
+/// How light from the environment is reflected by isotropic glTF materials: time against error, see docs/ibl.md.
+///
+/// Suns that the maps have been parted from are shaded in every tier. `SplitSum` is meant for maps that hold all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum Quality {
+    /// One lookup in the mirror direction (Karis 2013): the baseline.
+    SplitSum,
+    /// One fitted lookup.
+    Draft,
+    /// Two fitted lookups.
+    #[default]
+    Standard,
+    /// Three fitted lookups.
+    High,
+}
+
+impl Quality {
+    pub const ALL: [Self; 4] = [Self::SplitSum, Self::Draft, Self::Standard, Self::High];
+
+    /// The name in reports and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SplitSum => "split-sum",
+            Self::Draft => "draft",
+            Self::Standard => "standard",
+            Self::High => "high",
+        }
+    }
+
+    /// The tier of a name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|quality| quality.name() == name)
+    }
+
+    /// Whether suns are taken out of the panorama before it is prefiltered.
+    pub fn parts_suns(self) -> bool {
+        self != Self::SplitSum
+    }
+}
+
 /// A picture to be taken of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
@@ -85,4 +125,5 @@ pub struct View {
     pub energy_compensation: bool,
     /// For punctual lights; the tables that light from the environment is read through hold the default.
     pub geometry: Geometry,
+    pub quality: Quality,
 }

@@ -1,7 +1,7 @@
 //! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
 
 use crate::scene::{
-    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Sampler, Scene, TextureSlot, Topology, UvTransform,
+    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, TextureSlot, Topology, UvTransform,
 };
 use std::fmt;
 
@@ -30,11 +30,15 @@ pub struct SceneFeatures {
     pub environment: bool,
     /// Some metal's Fresnel curve is not Schlick's, so a table of the difference is bound.
     pub fresnel_tail: bool,
+    /// The environment's maps come with suns that they do not hold.
+    pub suns: bool,
 }
 
 impl SceneFeatures {
+    /// What `scene` says; `suns` is for its environment's maps to tell.
     pub fn of(scene: &Scene) -> Self {
         Self {
+            suns: false,
             punctual: scene.lights_in_world().iter().any(|light| light.intensity != glam::DVec3::ZERO),
             environment: scene.environment.as_ref().is_some_and(|environment| environment.intensity > 0.0),
             fresnel_tail: scene
@@ -232,10 +236,17 @@ pub struct ForwardFeatures {
     pub vertex: VertexFeatures,
     pub energy_compensation: bool,
     pub geometry: Geometry,
+    pub quality: Quality,
     pub topology: Topology,
 }
 
 impl ForwardFeatures {
+    /// How the environment is reflected. Only round lobes have fitted taps.
+    pub fn reflection(&self) -> Quality {
+        let round = self.material.shading == Shading::Lit && !self.material.anisotropic;
+        if round && self.scene.environment { self.quality } else { Quality::SplitSum }
+    }
+
     /// Topology changes no code, so modules are shared across it.
     pub fn module_key(mut self) -> Self {
         self.topology = Topology::Triangles;
@@ -257,6 +268,8 @@ impl fmt::Display for ForwardFeatures {
             (lit && self.scene.punctual, "punctual"),
             (lit && self.scene.environment, "environment"),
             (lit && !self.energy_compensation, "single_scatter"),
+            (lit && self.scene.suns, "suns"),
+            (self.reflection() != Quality::SplitSum, self.quality.name()),
             (self.material.anisotropic, "anisotropic"),
             (self.material.fresnel == FresnelFeature::Lazanyi, "lazanyi"),
             (self.material.fresnel == FresnelFeature::Conductor, "conductor"),

@@ -4,7 +4,7 @@ use super::compose::{Composed, ShaderError, Slot, Slots, compose};
 use super::features::{Alpha, ForwardFeatures, FresnelFeature, Shading};
 use super::sources::ShaderSources;
 use super::{interface, types};
-use crate::scene::{Geometry, TextureSlot, ToneMap};
+use crate::scene::{Geometry, Quality, TextureSlot, ToneMap};
 
 /// The forward pass of one kind of draw.
 pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
@@ -73,6 +73,16 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
                 (true, _) => Slot::File("lighting/environment.wgsl"),
                 (false, _) => Slot::File("lighting/environment_none.wgsl"),
             },
+        ),
+        ("suns", choose(scene.suns, "lighting/suns.wgsl", "lighting/suns_none.wgsl")),
+        (
+            "reflection",
+            Slot::File(match features.reflection() {
+                Quality::SplitSum => "lighting/reflection_mirror.wgsl",
+                Quality::Draft => "lighting/reflection_draft.wgsl",
+                Quality::Standard => "lighting/reflection_standard.wgsl",
+                Quality::High => "lighting/reflection_high.wgsl",
+            }),
         ),
         (
             "multiscatter",

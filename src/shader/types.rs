@@ -66,8 +66,12 @@ gpu_struct! {
         radiance_scale: f32,
         /// Levels - 1.
         level_scale: f32,
+        sun_count: u32,
         pad_0: f32,
-        pad_1: f32,
+        /// In the world, with what the disc adds to alpha squared.
+        suns: [vec4f; 4],
+        /// Lux, times the intensity.
+        sun_illuminance: [vec4f; 4],
     }
 }
 

@@ -20,8 +20,8 @@ use specula::reference::surface::{Surface, World};
 use specula::reference::{disney, integrator::Lighting};
 use specula::scene::{
     Background, Camera, Disney, Environment, EnvironmentImage, EnvironmentMaps, Geometry, Image, LightKind, Material,
-    Mesh, MetalFresnel, Node, Pixels, Primitive, Projection, Sampler, Scene, Texture, TextureRef, TextureSlot, ToneMap,
-    Topology, UvTransform, View,
+    Mesh, MetalFresnel, Node, Pixels, Primitive, Projection, Quality, Sampler, Scene, Texture, TextureRef, TextureSlot,
+    ToneMap, Topology, UvTransform, View,
 };
 use specula::shader::ShaderSources;
 
@@ -281,6 +281,8 @@ fn view(geometry: Geometry) -> View {
         background: Background::Transparent,
         energy_compensation: true,
         geometry,
+        // The truth here is the split sum; tests/suite/tiers.rs has the others.
+        quality: Quality::SplitSum,
     }
 }
 

@@ -13,4 +13,5 @@ mod mutants;
 mod shaders;
 mod stability;
 mod support;
+mod tiers;
 mod twins;

@@ -169,7 +169,7 @@ const IN_FRAMES: &[Mutant] = &[
     fault("lighting/environment.wgsl", "* lobes.single_scatter", "* lobes.fresnel.F0"),
     fault("lighting/environment.wgsl", "(lobes.diffuse + lobes.multiscatter)", "lobes.diffuse"),
     fault("lighting/shape_isotropic.wgsl", "reflect(-v, n)", "n"),
-    fault("lighting/environment.wgsl", "to_environment * mirror", "mirror"),
+    fault("lighting/reflection_mirror.wgsl", "to_environment * mirror", "mirror"),
     fault("lighting/environment.wgsl", "to_environment * lobes.n", "lobes.n"),
     fault("lighting/prefiltered.wgsl", "level - f32(lower)", "0.0"),
     fault("lighting/prefiltered.wgsl", " * environment.radiance_scale", ""),
@@ -191,9 +191,10 @@ const IN_FRAMES: &[Mutant] = &[
 ];
 
 /// Files that need a frame to be tested and have faults in [`IN_FRAMES`].
-const SEEN_IN_FRAMES: [&str; 18] = [
+const SEEN_IN_FRAMES: [&str; 19] = [
     "lighting/dfg.wgsl",
     "lighting/environment.wgsl",
+    "lighting/reflection_mirror.wgsl",
     "lighting/lit.wgsl",
     "lighting/fresnel_conductor.wgsl",
     "lighting/fresnel_lazanyi.wgsl",

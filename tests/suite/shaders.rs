@@ -2,10 +2,10 @@
 
 use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use specula::gpu::bindings::{background_entries, display_entries, frame_entries, material_entries};
+use specula::gpu::bindings::{FRAME_TAPS, background_entries, display_entries, frame_entries, material_entries};
 use specula::scene::{
-    AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Sampler, Scene, Texture, TextureRef, TextureSlot,
-    ToneMap, Topology, UvTransform,
+    AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Texture, TextureRef,
+    TextureSlot, ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
     Composed, DisplayFeatures, ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
@@ -35,7 +35,12 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
         ..Default::default()
     };
     [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
-        let scene_features = SceneFeatures { punctual, environment, fresnel_tail: !slots.is_multiple_of(3) };
+        let scene_features = SceneFeatures {
+            punctual,
+            environment,
+            fresnel_tail: !slots.is_multiple_of(3),
+            suns: environment && slots % 2 == 1,
+        };
         let features = MaterialFeatures::of(material, primitive, &scene, scene_features);
         ForwardFeatures {
             scene: scene_features,
@@ -43,6 +48,7 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
             vertex: VertexFeatures::of(&features, primitive),
             energy_compensation: !slots.is_multiple_of(5),
             geometry: Geometry::ALL[slots as usize % 5],
+            quality: Quality::ALL[slots as usize % 4],
             topology: Topology::Triangles,
         }
     })
@@ -146,6 +152,10 @@ fn forward_modules_use_all_that_is_bound_and_nothing_else() {
             // Group 0 is the scene's: an unlit surface among lit ones leaves its light alone, and a Disney one what the
             // standard lobes read.
             offered.retain(|(group, binding), _| *group > 0 || used.contains_key(&(0, *binding)));
+        }
+        if features.reflection() == Quality::SplitSum {
+            // So is the tier: the view may change it.
+            offered.remove(&(0, FRAME_TAPS));
         }
         assert_eq!(used, offered, "{features}");
         compared += used.len();

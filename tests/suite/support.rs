@@ -55,6 +55,7 @@ pub(crate) fn front_view(side_px: u32) -> View {
         background: Background::Transparent,
         energy_compensation: true,
         geometry: Default::default(),
+        quality: Default::default(),
     }
 }
 

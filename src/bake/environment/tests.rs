@@ -1,9 +1,13 @@
 use super::*;
+use crate::bake::test_support::sample_panorama;
 use crate::math::spaces::{direction_from_equirect, orthonormal_basis};
 use crate::progress::Silent;
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
+
+/// The filter is tested with the sun in the picture: it is the hardest part.
+const WHOLE: BakeOptions = BakeOptions { max_side: LARGEST_SIDES[0], suns: false };
 
 /// A sky with a gradient, a dark ground, a coloured window and a small sun of ten thousand times the sky's radiance.
 fn synthetic(width: u32, height: u32) -> EnvironmentImage {
@@ -20,19 +24,7 @@ fn synthetic(width: u32, height: u32) -> EnvironmentImage {
 
 /// A panorama of the shared samples, reduced to 256 x 128. `None` without them.
 fn garden() -> Option<EnvironmentImage> {
-    let folder = std::env::var("SPECULA_SAMPLES").unwrap_or_else(|_| "../shared/samples".into());
-    let path = std::path::Path::new(&folder).join("env/chinese_garden_1k.hdr");
-    let Ok(image) = image::open(&path) else {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", path.display());
-        eprintln!("skipped: {} is missing", path.display());
-        return None;
-    };
-    let image = image.into_rgb32f();
-    let full = EnvironmentImage {
-        width: image.width(),
-        height: image.height(),
-        texels: image.pixels().map(|pixel| Vec3::from(pixel.0)).collect(),
-    };
+    let full = sample_panorama("chinese_garden_1k.hdr")?;
     Some(Panorama::resampled(&full, 256, 128).into())
 }
 
@@ -129,7 +121,7 @@ fn prefiltering_agrees_with_a_sum_over_the_panorama() {
 #[test]
 fn tiles_are_large_enough_for_bilinear_lookup() {
     let image = synthetic(1024, 512);
-    let maps = bake(&image, &BakeOptions::default(), &Silent);
+    let maps = bake(&image, &WHOLE, &Silent);
     let harmonics = analyse(&image);
     let directions = [on_sphere(400), near_the_brightest(&image, 400)].concat();
     for level in 1..LEVELS {
@@ -147,7 +139,7 @@ fn tiles_are_large_enough_for_bilinear_lookup() {
 fn the_mirror_level_shows_the_panorama() {
     let smooth = |d: DVec3| DVec3::new(1.0 + d.x, 1.0 + d.y * d.z, 1.5 + d.y);
     let image = Panorama::from_fn(512, 256, smooth).into();
-    let maps = bake(&image, &BakeOptions::default(), &Silent);
+    let maps = bake(&image, &WHOLE, &Silent);
     for d in on_sphere(500) {
         let error = (maps.specular(d, 0.0) - smooth(d)).abs().max_element();
         // Measured 2.3e-3, where the chart has its folds.
@@ -165,7 +157,7 @@ fn the_mirror_level_loses_no_light_of_a_large_panorama() {
     let solid_angle = |i: u32| 2.0 * PI / f64::from(width) * (edge(i / width) - edge(i / width + 1));
     let expected = 1e3 * (0..width * height).step_by(1009).map(solid_angle).sum::<f64>() / (4.0 * PI);
 
-    let maps = bake(&image, &BakeOptions { max_side: 64 }, &Silent);
+    let maps = bake(&image, &BakeOptions { max_side: 64, ..WHOLE }, &Silent);
     let directions = on_sphere(200_000);
     let seen = directions.iter().map(|&d| maps.specular(d, 0.0).x).sum::<f64>() / directions.len() as f64;
     // Measured 6e-4.
@@ -179,7 +171,7 @@ fn constant_light_stays_constant_everywhere() {
         EnvironmentImage::constant(radiance),
         EnvironmentImage { width: 100, height: 37, texels: vec![radiance; 3700] },
     ] {
-        let maps = bake(&image, &BakeOptions::default(), &Silent);
+        let maps = bake(&image, &WHOLE, &Silent);
         for d in on_sphere(200) {
             let off = |value: DVec3| (value / radiance.as_dvec3() - 1.0).abs().max_element();
             assert!(off(maps.irradiance_over_pi(d)) < 1e-12);
@@ -193,7 +185,7 @@ fn constant_light_stays_constant_everywhere() {
 
 #[test]
 fn lookups_do_not_jump_where_the_chart_is_cut() {
-    let maps = bake(&synthetic(256, 128), &BakeOptions::default(), &Silent);
+    let maps = bake(&synthetic(256, 128), &WHOLE, &Silent);
     // The edges of the chart are the lower halves of the great circles x = 0 and z = 0.
     for i in 0..=2000 {
         let (y, a) = (f64::from(i) * PI / 2000.0).sin_cos();
@@ -209,10 +201,29 @@ fn lookups_do_not_jump_where_the_chart_is_cut() {
 
 #[test]
 fn tile_sides_follow_the_panorama_within_their_limits() {
-    let sides = |width, max_side| tile_sides(width, &BakeOptions { max_side });
+    let sides = |width, max_side| tile_sides(width, &BakeOptions { max_side, ..WHOLE });
     assert_eq!(sides(1024, 1024), [512, 512, 256, 128, 128, 128, 128, 128, 64]);
     assert_eq!(sides(16384, 1024)[0], 1024);
     assert_eq!(sides(4, 1024), [32, 64, 64, 64, 64, 64, 64, 64, 64]);
     assert_eq!(sides(4096, 300)[0], 256);
     assert_eq!(sides(0, 0)[0], 32);
+}
+
+#[test]
+fn maps_without_suns_and_the_suns_add_up_to_the_whole() {
+    let image = synthetic(512, 256);
+    let (whole, parted) = (bake(&image, &WHOLE, &Silent), bake(&image, &BakeOptions::default(), &Silent));
+    assert_eq!((whole.suns.len(), parted.suns.len()), (0, 1));
+    assert!(
+        whole.specular(parted.suns[0].direction, 0.0).abs_diff_eq(parted.specular(parted.suns[0].direction, 0.0), 0.0)
+    );
+    // The mean irradiance / pi: a light of E lux adds E / 4 pi to it.
+    let sum = parted.irradiance_over_pi[0] + parted.suns[0].illuminance / (4.0 * PI);
+    assert!((sum / whole.irradiance_over_pi[0] - 1.0).abs().max_element() < 1e-6, "{sum}");
+    for level in 1..LEVELS {
+        let r = level as f64 / 8.0;
+        let at = |direction| (parted.specular(direction, r), whole.specular(direction, r));
+        let (rest, all) = at(parted.suns[0].direction);
+        assert!(rest.max_element() < 0.25 * all.max_element(), "level {level}: {rest} of {all}");
+    }
 }

@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, bindings};
 use crate::gpu_scene::{GpuEnvironment, SharedTextures};
 use crate::progress::Silent;
 use crate::renderer::{shared_textures, table};
-use crate::scene::{AlphaMode, Disney, Environment, EnvironmentImage, Geometry, Material, MetalFresnel};
+use crate::scene::{AlphaMode, Disney, Environment, EnvironmentImage, Geometry, Material, MetalFresnel, Quality};
 use crate::shader::{ForwardFeatures, FresnelFeature, SceneFeatures, Shading};
 use glam::Vec3;
 
@@ -19,8 +19,8 @@ pub struct FuzzedShader {
     pub environment_nits: f32,
 }
 
-const LIT: SceneFeatures = SceneFeatures { punctual: true, environment: true, fresnel_tail: true };
-const BY_LIGHTS: SceneFeatures = SceneFeatures { punctual: true, environment: false, fresnel_tail: false };
+const LIT: SceneFeatures = SceneFeatures { punctual: true, environment: true, suns: true, fresnel_tail: true };
+const BY_LIGHTS: SceneFeatures = SceneFeatures { punctual: true, environment: false, suns: false, fresnel_tail: false };
 
 /// All that are searched.
 pub const FUZZED: &[FuzzedShader] = &[
@@ -56,6 +56,7 @@ pub const FUZZED: &[FuzzedShader] = &[
             let metal_fresnel = MetalFresnel::Conductor { n: Vec3::ONE, k: Vec3::ONE, a: Vec3::ONE };
             ForwardFeatures {
                 geometry: Geometry::SmithSeparable,
+                quality: Quality::High,
                 ..stage::features(LIT, Material { metal_fresnel, ..Default::default() })
             }
         },
@@ -119,6 +120,9 @@ impl Resources {
         }
         if features.material.shading.is_lit() {
             entries.push((bindings::FRAME_SAMPLER, wgpu::BindingResource::Sampler(&self.shared.clamp_sampler)));
+            if self.features.reflection() != Quality::SplitSum {
+                entries.push((bindings::FRAME_TAPS, wgpu::BindingResource::TextureView(&self.shared.taps)));
+            }
             if self.features.scene.environment {
                 entries.extend([
                     (bindings::FRAME_ENVIRONMENT, self.environment.uniform.as_entire_binding()),

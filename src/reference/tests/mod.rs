@@ -22,6 +22,7 @@ pub(in crate::reference) fn view() -> View {
         background: Background::Transparent,
         energy_compensation: true,
         geometry: Geometry::default(),
+        quality: Default::default(),
     }
 }
 

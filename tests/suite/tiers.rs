@@ -1,0 +1,179 @@
+//! Light from the environment in every tier, against the BRDF summed over all texels in float64: no noise, no sampling.
+
+use crate::support::{draw_with, front_view, gpu, samples, sphere_scene};
+use glam::{DVec2, DVec3, Vec4};
+use rayon::prelude::*;
+use specula::bake::environment::{self, BakeOptions};
+use specula::bake::sun;
+use specula::capture::CaptureOptions;
+use specula::gpu::Gpu;
+use specula::gpu::formats::Precision;
+use specula::import::environment_from_path;
+use specula::math::color::luminance;
+use specula::math::spaces::direction_from_equirect;
+use specula::progress::Silent;
+use specula::reference::albedo::DirectionalAlbedo;
+use specula::reference::bsdf::{Bsdf, ModelChoices};
+use specula::reference::geometry::Ray;
+use specula::reference::surface::World;
+use specula::scene::{Environment, EnvironmentImage, EnvironmentMaps, Material, Quality, Scene};
+use specula::shader::ShaderSources;
+use std::f64::consts::PI;
+
+const SIDE_PX: u32 = 24;
+
+/// A sphere under a panorama, and what its pixels show.
+pub(crate) struct Sphere {
+    scene: Scene,
+    /// Where the sphere covers the pixel's centre.
+    truth: Vec<Option<DVec3>>,
+}
+
+/// Maps of a panorama with its suns parted and with them inside.
+pub(crate) struct Maps {
+    parted: EnvironmentMaps,
+    whole: EnvironmentMaps,
+}
+
+impl Maps {
+    fn new(image: &EnvironmentImage) -> Self {
+        let bake = |suns| environment::bake(image, &BakeOptions { suns, ..Default::default() }, &Silent);
+        Self { parted: bake(true), whole: bake(false) }
+    }
+
+    fn of(&self, quality: Quality) -> &EnvironmentMaps {
+        if quality.parts_suns() { &self.parted } else { &self.whole }
+    }
+}
+
+impl Sphere {
+    fn new(material: Material, image: &EnvironmentImage) -> Self {
+        let mut scene = sphere_scene(material);
+        let environment = Environment { rotation_rad: 0.5, intensity: 1.3, ..Environment::new(image.clone()) };
+        // Lobes of alpha 0.04 take cells of 0.7 degrees; wider ones larger cells.
+        let cell = if scene.materials[0].perceptual_roughness < 0.3 { 2 } else { 4 };
+        let cells = cells(&environment, cell);
+        scene.environment = Some(environment);
+        let truth = truth(&scene, &cells);
+        Self { scene, truth }
+    }
+
+    /// RMS of the error over that of the truth.
+    pub(crate) fn error(&self, gpu: &Gpu, shaders: ShaderSources, maps: &Maps, quality: Quality) -> f64 {
+        let view = specula::scene::View { quality, ..front_view(SIDE_PX) };
+        let options = CaptureOptions { samples: 1, precision: Precision::Float };
+        let frame = draw_with(gpu, shaders, &self.scene, Some(maps.of(quality)), &view, options);
+        let (mut difference, mut power, mut count) = (0.0, 0.0, 0);
+        for (texel, truth) in frame.radiance.unwrap().texels.iter().zip(&self.truth) {
+            let (Some(truth), true) = (truth, texel.w > 0.5) else { continue };
+            difference += (texel.truncate().as_dvec3() - truth).length_squared();
+            power += truth.length_squared();
+            count += 1;
+        }
+        assert!(count > 300, "only {count} pixels are covered");
+        let error: f64 = difference / power;
+        if error.is_finite() { error.sqrt() } else { f64::INFINITY }
+    }
+}
+
+/// Squares of `side` texels as directions in the world with radiance times solid angle. The direction is the mean by
+/// light, so that a sun stays where it is.
+fn cells(environment: &Environment, side: usize) -> Vec<(DVec3, DVec3)> {
+    let image = &environment.image;
+    let (width, height) = (image.width as usize, image.height as usize);
+    let cosine = |row: usize| (row as f64 * PI / height as f64).cos();
+    let cell = |x: usize, y: usize| {
+        let (mut toward, mut light) = (DVec3::ZERO, DVec3::ZERO);
+        for (row, column) in (y..y + side).flat_map(|row| (x..x + side).map(move |column| (row, column))) {
+            let solid_angle = 2.0 * PI / width as f64 * (cosine(row) - cosine(row + 1));
+            let texel = image.texels[row * width + column].as_dvec3() * solid_angle;
+            let uv = DVec2::new(column as f64 + 0.5, row as f64 + 0.5) / DVec2::new(width as f64, height as f64);
+            toward += direction_from_equirect(uv) * (luminance(texel) + 1e-12);
+            light += texel;
+        }
+        (environment.world_from_environment(toward.normalize()), light * environment.intensity)
+    };
+    let rows = (0..height).step_by(side);
+    rows.flat_map(|y| (0..width).step_by(side).map(move |x| (x, y))).map(|(x, y)| cell(x, y)).collect()
+}
+
+fn truth(scene: &Scene, cells: &[(DVec3, DVec3)]) -> Vec<Option<DVec3>> {
+    let view = front_view(SIDE_PX);
+    let (world, albedo) = (World::new(scene, &view), DirectionalAlbedo::default());
+    let pixel = |i: u32| {
+        let center = DVec2::new(f64::from(i % SIDE_PX), f64::from(i / SIDE_PX)) + 0.5;
+        let (origin, direction) = view.camera.ray(center, view.size_px);
+        let layers = world.layers(&Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY });
+        let surface = world.surface(&layers.first()?.hit);
+        let n = surface.normal_in_world;
+        let bsdf = Bsdf::new(&albedo, surface.material, n, -direction, ModelChoices::default());
+        let seen = cells.iter().filter(|(l, _)| n.dot(*l) > 0.0);
+        Some(seen.map(|(l, light)| bsdf.evaluate(*l) * *light * n.dot(*l)).sum())
+    };
+    (0..SIDE_PX * SIDE_PX).into_par_iter().map(pixel).collect()
+}
+
+fn metal(perceptual_roughness: f32) -> Material {
+    Material { base_color: Vec4::ONE, metallic: 1.0, perceptual_roughness, ..Default::default() }
+}
+
+/// Black below its interface, so that only the specular lobe shows.
+fn dielectric(perceptual_roughness: f32) -> Material {
+    Material { base_color: Vec4::W, metallic: 0.0, perceptual_roughness, ..Default::default() }
+}
+
+const ROUGHNESS: [f32; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+
+/// Errors of every tier, for each perceptual roughness.
+fn errors(gpu: &Gpu, image: &EnvironmentImage, material: fn(f32) -> Material) -> Vec<[f64; 4]> {
+    let maps = Maps::new(image);
+    let of_roughness = |r: f32| {
+        let sphere = Sphere::new(material(r), image);
+        Quality::ALL.map(|quality| sphere.error(gpu, ShaderSources::default(), &maps, quality))
+    };
+    ROUGHNESS.map(of_roughness).into()
+}
+
+fn print(name: &str, errors: &[[f64; 4]]) {
+    println!("{name}: r, split-sum, draft, standard, high");
+    for (r, row) in ROUGHNESS.iter().zip(errors) {
+        println!("  {r:.1} {}", row.map(|error| format!("{:6.2} %", 100.0 * error)).join(" "));
+    }
+}
+
+#[test]
+fn tiers_follow_the_brdf_summed_over_the_sky() {
+    let Some(samples) = samples() else { return };
+    let gpu = gpu(Precision::Float);
+    for file in ["chinese_garden_1k.hdr", "spiaggia_di_mondello_1k.hdr"] {
+        let image = environment_from_path(&samples.join("env").join(file)).unwrap();
+        let of_metal = errors(&gpu, &image, metal);
+        print(&format!("{file}, metal"), &of_metal);
+        print(&format!("{file}, dielectric"), &errors(&gpu, &image, dielectric));
+        print(&format!("{file} without its sun, metal"), &errors(&gpu, &sun::extract(&image).residual, metal));
+        for [_, _, standard, high] in of_metal {
+            assert!(standard <= 0.03 && high <= 0.015, "{file}: {standard}, {high}");
+        }
+    }
+}
+
+#[test]
+fn the_white_furnace_is_white_in_every_tier() {
+    let gpu = gpu(Precision::Float);
+    let image = EnvironmentImage::constant(glam::Vec3::ONE);
+    let maps = Maps::new(&image);
+    let mut worst: f32 = 0.0;
+    for (quality, step) in Quality::ALL.into_iter().flat_map(|quality| (0..=8).map(move |step| (quality, step))) {
+        let mut scene = sphere_scene(metal(step as f32 / 8.0));
+        scene.environment = Some(Environment::new(image.clone()));
+        let view = specula::scene::View { quality, ..front_view(SIDE_PX) };
+        let options = CaptureOptions { samples: 1, precision: Precision::Float };
+        let frame = draw_with(&gpu, ShaderSources::default(), &scene, Some(maps.of(quality)), &view, options);
+        let covered = frame.radiance.unwrap().texels.into_iter().filter(|texel| texel.w > 0.5);
+        for texel in covered {
+            worst = worst.max((texel.truncate() - 1.0).abs().max_element());
+        }
+    }
+    println!("furnace: {worst:.1e}");
+    assert!(worst <= 2e-3, "{worst}");
+}
