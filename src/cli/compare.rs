@@ -109,7 +109,7 @@ fn write_pictures(args: &CompareArgs, pair: &Pair<'_>, measured: &Measured) -> R
         files.push((path, pictures::difference(path, pair)?));
     }
     if let (Some(path), Some(map)) = (&args.heat_map, &measured.flip_map) {
-        files.push((path, pictures::heat_map(path, map)?));
+        files.push((path, pictures::heat_map(path, pair, map)?));
     }
     files.into_iter().try_for_each(|(path, bytes)| output::write(path, &bytes))
 }

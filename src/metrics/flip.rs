@@ -1,7 +1,8 @@
 //! FLIP: the difference that a person sees who flips between two pictures.
 //!
 //! Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild 2020, "FLIP: A Difference Evaluator for
-//! Alternating Images", for pictures on a display; the constants below are of this paper. [`hdr_flip`] is that of Andersson, Nilsson, Shirley and Akenine-Moller 2021, "Visualizing Errors in Rendered High Dynamic Range Images".
+//! Alternating Images", for pictures on a display; the constants below are of this paper. [`hdr_flip`] is that
+//! of Andersson, Nilsson, Shirley and Akenine-Moller 2021, "Visualizing Errors in Rendered High Dynamic Range Images".
 
 mod color;
 mod hdr;

@@ -1,5 +1,8 @@
 //! `specula compare` as its users start it.
 
+use specula::metrics::Pair;
+use specula::metrics::flip::flip;
+use specula::metrics::heat::heat;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
@@ -146,13 +149,17 @@ fn json_has_everything() {
 fn pictures_of_the_difference_are_written() {
     let fixture = Fixture::new();
     let (a, b) = (fixture.png("a.png", 100), fixture.png("b.png", 0));
-    let [difference, heat, signed] = ["difference.png", "heat.png", "signed.exr"].map(|name| fixture.path(name));
-    assert_ends(&[&a, &b, "--difference", &difference, "--heat-map", &heat, "--metric", "pixels"], 1, &[]);
+    let [difference, heat_map, signed] = ["difference.png", "heat.png", "signed.exr"].map(|name| fixture.path(name));
+    assert_ends(&[&a, &b, "--difference", &difference, "--heat-map", &heat_map, "--metric", "pixels"], 1, &[]);
     let picture = image::open(&difference).unwrap().to_rgb8();
     assert_eq!((picture.get_pixel(5, 3).0, picture.get_pixel(4, 3).0), ([255, 0, 255], [0, 0, 0]));
-    let picture = image::open(&heat).unwrap().to_rgb8();
-    let brightness = |x, y| picture.get_pixel(x, y).0.iter().map(|&code| u32::from(code)).sum::<u32>();
-    assert!(brightness(5, 3) > 300 && brightness(23, 15) == 0, "{} {}", brightness(5, 3), brightness(23, 15));
+    let picture = image::open(&heat_map).unwrap().to_rgb8();
+    let [shown, wanted] = [&a, &b].map(|path| specula::import::picture_from_path(Path::new(path)).unwrap());
+    let map = flip(&Pair::new(&shown, &wanted, None).unwrap());
+    assert!(map.values.iter().any(|&error| error > 0.1));
+    for (pixel, &error) in picture.pixels().zip(&map.values) {
+        assert_eq!(pixel.0, heat(error));
+    }
     let (a, b) = (fixture.exr("a.exr", 5.0), fixture.exr("b.exr", 5.5));
     assert_ends(&[&a, &b, "--difference", &signed], 1, &[]);
     let read = specula::import::picture_from_path(Path::new(&signed)).unwrap();

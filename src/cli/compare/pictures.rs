@@ -29,10 +29,13 @@ pub(super) fn difference(path: &Path, pair: &Pair<'_>) -> Result<Vec<u8>, CliErr
     bytes.map_err(|reason| CliError::Write { path: path.to_owned(), reason })
 }
 
-pub(super) fn heat_map(path: &Path, map: &ErrorMap) -> Result<Vec<u8>, CliError> {
+/// The file with the errors of the pixels that count; others are black.
+pub(super) fn heat_map(path: &Path, pair: &Pair<'_>, map: &ErrorMap) -> Result<Vec<u8>, CliError> {
     if Format::of(path)? != Format::Png {
         return Err(CliError::Usage(format!("{}: a heat map is a .png", path.display())));
     }
-    let bytes = png(map.width, map.height, &heat::heat_map(map));
+    let values = map.values.iter().enumerate().map(|(i, &error)| if pair.is_selected(i) { error } else { 0.0 });
+    let counted = ErrorMap { values: values.collect(), ..*map };
+    let bytes = png(map.width, map.height, &heat::heat_map(&counted));
     bytes.map_err(|reason| CliError::Write { path: path.to_owned(), reason })
 }
