@@ -4,6 +4,9 @@ fn sun_radiance(lobes: Lobes) -> vec3f {
     var radiance = vec3f(0.0);
     for (var i = 0u; i < environment.sun_count; i++) {
         let sun = environment.suns[i];
+        if dot(lobes.n, sun.xyz) <= 0.0 {
+            continue;
+        }
         let disc = lobes_of_disc(lobes, sun.w, saturate(lobes.perceptual_roughness * environment.level_scale));
         radiance += evaluate_lobes(disc, sun.xyz) * environment.sun_illuminance[i].xyz;
     }

@@ -18,7 +18,7 @@
 mod fit;
 
 use super::table::{EmbeddedTable, unorm16};
-use fit::{FIT_1, FIT_2, FIT_3, NOV, ROUGHNESS, Tap};
+use fit::{FIT_1, FIT_2, FIT_3, NOV, PERCEPTUAL_ROUGHNESS, Tap};
 
 /// Columns and rows of a tile: steps of 0.05, so that the rows of the fit are met.
 pub const SIDE: usize = 21;
@@ -59,11 +59,11 @@ fn texel(tile: usize, perceptual_roughness: f64, cosine: f64) -> [f64; CHANNELS]
 /// The fit between its nodes, and beyond them as at the nearest. Seen from above the lobe has no plane of incidence, so
 /// the offsets end there, lest the direction of a plane be seen that does not exist.
 fn taps<const K: usize>(
-    fit: &[[[Tap; K]; NOV.len()]; ROUGHNESS.len()],
+    fit: &[[[Tap; K]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()],
     perceptual_roughness: f64,
     cosine: f64,
 ) -> [Tap; K] {
-    let (row, down) = node(&ROUGHNESS, perceptual_roughness);
+    let (row, down) = node(&PERCEPTUAL_ROUGHNESS, perceptual_roughness);
     let (column, right) = node(&NOV, cosine);
     let facing = ((1.0 - cosine) / (1.0 - NOV[NOV.len() - 1])).min(1.0);
     std::array::from_fn(|k| {
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn shares_of_every_set_add_up_and_fit_the_table() {
-        fn check<const K: usize>(fit: &[[[Tap; K]; NOV.len()]; ROUGHNESS.len()]) {
+        fn check<const K: usize>(fit: &[[[Tap; K]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()]) {
             for taps in fit.iter().flatten() {
                 for share in [|tap: &Tap| tap.share_metal, |tap: &Tap| tap.share_dielectric] {
                     let sum: f64 = taps.iter().map(share).sum();

@@ -8,7 +8,7 @@ use glam::{UVec2, Vec3};
 use specula::capture::CaptureOptions;
 use specula::gpu::Gpu;
 use specula::gpu::formats::Precision;
-use specula::scene::{Background, Environment, Projection, Scene, ToneMap, View};
+use specula::scene::{Background, Environment, Projection, Quality, Scene, ToneMap, View};
 use std::path::Path;
 
 /// Steps of 255 by which a channel may differ, and the share of channels that may differ at all. Other CPUs run other
@@ -21,7 +21,8 @@ fn case(name: &str) -> (Scene, View) {
     let mut scene = import(Path::new("assets/showcase.glb"));
     scene.environment = Some(Environment::new(specula::bake::studio::studio()));
     let camera = scene.cameras_in_world().remove(0);
-    let base = View { camera, size_px: UVec2::new(96, 72), ..front_view(1) };
+    // Of the baseline: the other tiers have a truth (tests/suite/tiers.rs).
+    let base = View { camera, size_px: UVec2::new(96, 72), quality: Quality::SplitSum, ..front_view(1) };
     let view = match name {
         "neutral" => View { background: Background::Color(Vec3::splat(0.16)), ..base },
         "panorama" => {

@@ -2,6 +2,7 @@
 
 use crate::lit_plane::{Plane, disney_planes, planes};
 use crate::support::gpu;
+use crate::tiers::Tiers;
 use crate::twins::files;
 use specula::gpu::Gpu;
 use specula::gpu::formats::Precision;
@@ -260,6 +261,37 @@ const DISNEY_LIGHTING: [&str; 4] = [
     "surface/tangent_vertex.wgsl",
 ];
 
+/// Faults in how suns and fitted taps are shaded.
+const IN_TIERS: &[Mutant] = &[
+    fault("lighting/suns.wgsl", "sun_illuminance[i]", "sun_illuminance[0]"),
+    fault("lighting/suns.wgsl", "let sun = environment.suns[i]", "let sun = environment.suns[0]"),
+    fault("lighting/suns.wgsl", "lobes, sun.w,", "lobes, 0.0,"),
+    fault("lighting/suns.wgsl", "saturate(lobes.perceptual_roughness * environment.level_scale)", "1.0"),
+    fault("lighting/taps.wgsl", "offset * 16.0 - 8.0", "8.0 - offset * 16.0"),
+    fault("lighting/taps.wgsl", "sqrt(8.0 * width)", "8.0 * width"),
+    fault(
+        "lighting/taps.wgsl",
+        "plane.cos_theta * c - plane.sin_theta * s",
+        "plane.cos_theta * c + plane.sin_theta * s",
+    ),
+    fault("lighting/taps.wgsl", "to_environment * tangent", "tangent"),
+    fault("lighting/taps.wgsl", "vec2f(lobes.NoV, lobes", "vec2f(sqrt(lobes.NoV), lobes"),
+    fault("lighting/taps.wgsl", "(lobes.single_scatter - dielectric)", "lobes.single_scatter"),
+    fault("lighting/reflection_draft.wgsl", "fit.z, fit.w", "0.5, fit.w"),
+    fault("lighting/reflection_standard.wgsl", "vec3f(shares.y), vec3f(shares.x)", "vec3f(shares.x), vec3f(shares.y)"),
+    fault("lighting/reflection_high.wgsl", "vec3f(dielectric.y)", "vec3f(dielectric.x)"),
+    fault("lighting/reflection_high.wgsl", "offsets.z, widths.z", "offsets.y, widths.z"),
+];
+
+/// Files whose faults [`IN_TIERS`] must show.
+const TIER_LIGHTING: [&str; 5] = [
+    "lighting/suns.wgsl",
+    "lighting/taps.wgsl",
+    "lighting/reflection_draft.wgsl",
+    "lighting/reflection_standard.wgsl",
+    "lighting/reflection_high.wgsl",
+];
+
 impl Mutant {
     fn sources(&self) -> ShaderSources {
         let mut sources = ShaderSources::default();
@@ -327,4 +359,11 @@ fn disney_frames_reject_every_planted_fault() {
     let gpu = gpu(Precision::Float);
     let planes = disney_planes();
     all_are_rejected(IN_DISNEY_FRAMES, DISNEY_LIGHTING.into_iter(), |mutant| mutant.rejecting_plane(&gpu, &planes));
+}
+
+#[test]
+fn tiers_reject_every_planted_fault() {
+    let gpu = gpu(Precision::Float);
+    let tiers = Tiers::new();
+    all_are_rejected(IN_TIERS, TIER_LIGHTING.into_iter(), |mutant| tiers.rejecting(&gpu, &mutant.sources()));
 }

@@ -1,7 +1,7 @@
 //! Scenes, a device and comparisons for the tests.
 
 use glam::{DMat4, DVec3, UVec2, Vec3};
-use specula::bake::environment;
+use specula::bake::environment::{self, BakeOptions};
 use specula::capture::{CaptureOptions, CaptureTarget, CapturedFrame, Wanted, submit};
 use specula::gpu::formats::Precision;
 use specula::gpu::{Gpu, GpuOptions, GpuRequest};
@@ -119,7 +119,8 @@ pub(crate) fn import(path: &Path) -> Scene {
 
 /// Uploads, draws and reads back; fails on any message of the driver or of wgpu.
 pub(crate) fn draw(gpu: &Gpu, scene: &Scene, view: &View, options: CaptureOptions) -> CapturedFrame {
-    let maps = scene.environment.as_ref().map(|e| environment::bake(&e.image, &Default::default(), &Silent));
+    let bake = BakeOptions { suns: view.quality.parts_suns(), ..Default::default() };
+    let maps = scene.environment.as_ref().map(|e| environment::bake(&e.image, &bake, &Silent));
     draw_with(gpu, ShaderSources::default(), scene, maps.as_ref(), view, options)
 }
 

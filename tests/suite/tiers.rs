@@ -122,7 +122,7 @@ fn dielectric(perceptual_roughness: f32) -> Material {
     Material { base_color: Vec4::W, metallic: 0.0, perceptual_roughness, ..Default::default() }
 }
 
-const ROUGHNESS: [f32; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+const PERCEPTUAL_ROUGHNESS: [f32; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
 /// Errors of every tier, for each perceptual roughness.
 fn errors(gpu: &Gpu, image: &EnvironmentImage, material: fn(f32) -> Material) -> Vec<[f64; 4]> {
@@ -131,12 +131,12 @@ fn errors(gpu: &Gpu, image: &EnvironmentImage, material: fn(f32) -> Material) ->
         let sphere = Sphere::new(material(r), image);
         Quality::ALL.map(|quality| sphere.error(gpu, ShaderSources::default(), &maps, quality))
     };
-    ROUGHNESS.map(of_roughness).into()
+    PERCEPTUAL_ROUGHNESS.map(of_roughness).into()
 }
 
 fn print(name: &str, errors: &[[f64; 4]]) {
     println!("{name}: r, split-sum, draft, standard, high");
-    for (r, row) in ROUGHNESS.iter().zip(errors) {
+    for (r, row) in PERCEPTUAL_ROUGHNESS.iter().zip(errors) {
         println!("  {r:.1} {}", row.map(|error| format!("{:6.2} %", 100.0 * error)).join(" "));
     }
 }
@@ -151,10 +151,71 @@ fn tiers_follow_the_brdf_summed_over_the_sky() {
         print(&format!("{file}, metal"), &of_metal);
         print(&format!("{file}, dielectric"), &errors(&gpu, &image, dielectric));
         print(&format!("{file} without its sun, metal"), &errors(&gpu, &sun::extract(&image).residual, metal));
+        // What the tiers promise; measured 0.8 % and 0.7 % at most.
         for [_, _, standard, high] in of_metal {
             assert!(standard <= 0.03 && high <= 0.015, "{file}: {standard}, {high}");
         }
     }
+}
+
+/// A sky of our own with two suns of different colour and a window.
+fn two_suns() -> EnvironmentImage {
+    let (width, height) = (512, 256);
+    let discs = [
+        (DVec3::new(0.5, 0.6, 0.5).normalize(), 0.035, DVec3::new(900.0, 500.0, 200.0)),
+        (DVec3::new(-0.7, -0.1, 0.6).normalize(), 0.035, DVec3::new(100.0, 300.0, 600.0)),
+        (DVec3::new(0.2, 0.9, 0.1).normalize(), 0.5, DVec3::new(4.0, 3.0, 5.0)),
+    ];
+    let texel = |i: u32| {
+        let uv = DVec2::new(f64::from(i % width) + 0.5, f64::from(i / width) + 0.5);
+        let direction = direction_from_equirect(uv / DVec2::new(f64::from(width), f64::from(height)));
+        let lit = discs.iter().filter(|(center, radius, _)| direction.dot(*center) > f64::cos(*radius));
+        let light: DVec3 = lit.map(|(_, _, radiance)| *radiance).sum();
+        (DVec3::new(0.2, 0.3, 0.4) * (1.2 + direction.y) + light).as_vec3()
+    };
+    EnvironmentImage { width, height, texels: (0..width * height).map(texel).collect() }
+}
+
+/// Spheres whose tiers show a fault in how suns and taps are shaded, with the error that each tier may have.
+pub(crate) struct Tiers {
+    maps: Maps,
+    spheres: Vec<(&'static str, Sphere, [f64; 3])>,
+}
+
+const TIERS: [Quality; 3] = [Quality::Draft, Quality::Standard, Quality::High];
+
+impl Tiers {
+    pub(crate) fn new() -> Self {
+        let image = two_suns();
+        let sphere = |material| Sphere::new(material, &image);
+        let spheres = vec![
+            // Errors measured on llvmpipe, times 1.1. The smooth one shows how a sun is handed over from the mirror level.
+            ("smooth metal", sphere(metal(0.1)), [0.37; 3]),
+            ("metal", sphere(metal(0.2)), [0.049, 0.047, 0.047]),
+            ("rougher metal", sphere(metal(0.5)), [0.064, 0.032, 0.0166]),
+            ("dielectric", sphere(dielectric(0.6)), [0.124, 0.0294, 0.0196]),
+        ];
+        Self { maps: Maps::new(&image), spheres }
+    }
+
+    /// The first sphere and tier that has a larger error than it may.
+    pub(crate) fn rejecting(&self, gpu: &Gpu, shaders: &ShaderSources) -> Option<String> {
+        let pairs = self.spheres.iter().flat_map(|(name, sphere, limits)| {
+            TIERS.into_iter().zip(limits).map(move |(tier, limit)| (name, sphere, tier, limit))
+        });
+        pairs
+            .map(|(name, sphere, tier, limit)| {
+                let error = sphere.error(gpu, shaders.clone(), &self.maps, tier);
+                println!("  {name}, {}: {:.2} % of {:.2} %", tier.name(), 100.0 * error, 100.0 * limit);
+                (error > *limit, format!("{name}, {}", tier.name()))
+            })
+            .find_map(|(rejected, name)| rejected.then_some(name))
+    }
+}
+
+#[test]
+fn spheres_under_two_suns_are_lit_as_the_sky_says() {
+    assert_eq!(Tiers::new().rejecting(&gpu(Precision::Float), &ShaderSources::default()), None);
 }
 
 #[test]
@@ -174,6 +235,6 @@ fn the_white_furnace_is_white_in_every_tier() {
             worst = worst.max((texel.truncate() - 1.0).abs().max_element());
         }
     }
-    println!("furnace: {worst:.1e}");
-    assert!(worst <= 2e-3, "{worst}");
+    // Measured 1.2e-7; a hundred times that is allowed for other drivers' filters.
+    assert!(worst <= 1.2e-5, "{worst}");
 }

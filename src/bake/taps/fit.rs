@@ -3,7 +3,7 @@
 //! weights by non-negative least squares.
 
 /// Perceptual roughness of the rows. Below, lobes keep their shape in units of alpha.
-pub(super) const ROUGHNESS: [f64; 5] = [0.3, 0.45, 0.6, 0.8, 1.0];
+pub(super) const PERCEPTUAL_ROUGHNESS: [f64; 5] = [0.3, 0.45, 0.6, 0.8, 1.0];
 /// Cosines of the view of the columns.
 pub(super) const NOV: [f64; 6] = [0.1, 0.25, 0.45, 0.65, 0.85, 0.97];
 
@@ -24,7 +24,7 @@ const fn tap(offset: f64, width: f64, share_metal: f64, share_dielectric: f64) -
 }
 
 /// 1 tap.
-pub(super) const FIT_1: [[[Tap; 1]; NOV.len()]; ROUGHNESS.len()] = [
+pub(super) const FIT_1: [[[Tap; 1]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()] = [
     [
         [tap(-0.8759, 0.4825, 1.0, 1.0)],
         [tap(-0.201, 0.5597, 1.0, 1.0)],
@@ -68,7 +68,7 @@ pub(super) const FIT_1: [[[Tap; 1]; NOV.len()]; ROUGHNESS.len()] = [
 ];
 
 /// 2 taps.
-pub(super) const FIT_2: [[[Tap; 2]; NOV.len()]; ROUGHNESS.len()] = [
+pub(super) const FIT_2: [[[Tap; 2]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()] = [
     [
         [tap(-2.0824, 0.5131, 0.5863, 0.4006), tap(-0.3255, 0.2296, 0.4138, 0.5994)],
         [tap(-1.1778, 0.4887, 0.6018, 0.4094), tap(0.5013, 0.3287, 0.3982, 0.5906)],
@@ -112,7 +112,7 @@ pub(super) const FIT_2: [[[Tap; 2]; NOV.len()]; ROUGHNESS.len()] = [
 ];
 
 /// 3 taps.
-pub(super) const FIT_3: [[[Tap; 3]; NOV.len()]; ROUGHNESS.len()] = [
+pub(super) const FIT_3: [[[Tap; 3]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()] = [
     [
         [tap(-3.0956, 0.6521, 0.4012, 0.212), tap(-1.139, 0.2224, 0.3369, 0.3863), tap(-0.0396, 0.17, 0.2619, 0.4017)],
         [
