@@ -82,7 +82,7 @@ pub struct WalkAlbedo<const N: usize> {
     pub all: [f64; N],
     /// What of it has met one facet only.
     pub single: [f64; N],
-    /// Standard error of `all`.
+    /// Standard error of `all` if the walks were independent; they are stratified, and their mean is better than that.
     pub standard_error: [f64; N],
 }
 
