@@ -86,7 +86,7 @@ pub struct WalkAlbedo<const N: usize> {
     pub standard_error: [f64; N],
 }
 
-/// Facets after which a walk is taken for lost. None was needed by more than a few hundred.
+/// Facets after which a walk is taken for lost. A share of the light leaves at each, so that none comes this far.
 const LONGEST_WALK: u32 = 10_000;
 
 /// Directional albedo of a surface with Schlick's Fresnel factor, F90 = 1, from `walks` random walks.
