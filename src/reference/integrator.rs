@@ -243,7 +243,8 @@ mod tests {
         let bitangent = brushed.normal_in_world.cross(tangent);
         brushed.material.anisotropy = Some(Anisotropy { tangent, bitangent, strength: 0.9 });
         let worst = worst_error_of(&[brushed], DVec3::new(0.2, 1.0, 0.3));
-        assert!(worst < 4e-4, "{worst:e}");
+        // Measured 7.4e-5; margin 2.
+        assert!(worst < 1.5e-4, "{worst:e}");
     }
 
     #[test]

@@ -82,11 +82,11 @@ pub struct WalkAlbedo<const N: usize> {
     pub all: [f64; N],
     /// What of it has met one facet only.
     pub single: [f64; N],
-    /// Standard error of `all`.
+    /// Standard error of `all` if the walks were independent; they are stratified, and their mean is better than that.
     pub standard_error: [f64; N],
 }
 
-/// Facets after which a walk is taken for lost. None was needed by more than a few hundred.
+/// Facets after which a walk is taken for lost. A share of the light leaves at each, so that none comes this far.
 const LONGEST_WALK: u32 = 10_000;
 
 /// Directional albedo of a surface with Schlick's Fresnel factor, F90 = 1, from `walks` random walks.

@@ -149,3 +149,23 @@ fn unsupported_samples_say_what_they_need() {
     let model = root.join("models/heart_draco.glb").display().to_string();
     assert_fails(&["render", &model, "-o", "x.png"], 2, "KHR_draco_mesh_compression");
 }
+
+#[test]
+fn the_reference_stops_at_an_error_and_writes_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let [out, errors, stats] = ["a.exr", "e.exr", "a.json"].map(|name| folder.path().join(name).display().to_string());
+    let common = ["render", SHOWCASE, "-o", &out, "--size", "24x18", "--stats", &stats, "--renderer", "reference"];
+    let run = |more: &[&str]| -> serde_json::Value {
+        let output = specula(&[&common, more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        serde_json::from_slice(&std::fs::read(&stats).unwrap()).unwrap()
+    };
+    let report = run(&["--error", "5%", "--error-image", &errors, "--bounces", "2"]);
+    assert!(report["relative_error"].as_f64().is_some_and(|error| error > 0.0 && error <= 0.05), "{report}");
+    assert!(std::fs::read(&errors).unwrap().starts_with(&[0x76, 0x2f, 0x31, 0x01]), "no OpenEXR file");
+    let report = run(&["--samples", "3"]);
+    assert!(report["samples"] == 3 && report["relative_error"].is_null(), "{report}");
+    assert_fails(&["render", SHOWCASE, "-o", &out, "--bounces", "2"], 2, "add --renderer reference");
+    let bad = ["--error-image", "e.png", "--renderer", "reference"];
+    assert_fails(&[&["render", SHOWCASE, "-o", &out], &bad[..]].concat(), 2, "end the name in .exr");
+}

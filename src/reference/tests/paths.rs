@@ -17,7 +17,7 @@ fn mean(image: &RadianceImage) -> DVec3 {
     image.texels.iter().map(|texel| texel.as_dvec4().truncate()).sum::<DVec3>() / image.texels.len() as f64
 }
 
-/// A few pixels that all see nearly the same point, the origin, from (1.5, 0, 3): past a square above it.
+/// A few pixels that all see nearly the same point, the origin, from (3, 0, 1): past a square above it.
 fn narrow_view() -> View {
     let eye = DVec3::new(3.0, 0.0, 1.0);
     let projection = Projection::Perspective { fov_y_rad: 1e-3 };
@@ -59,7 +59,8 @@ fn a_square_hides_its_form_factor_of_the_sky() {
     scene.environment = Some(Environment::new(EnvironmentImage::constant(Vec3::ONE)));
     let seen = mean(&paths(&scene, &narrow_view(), 1, 1024)).x;
     let expected = 1.0 - form_factor(1.0);
-    assert!((seen - expected).abs() < 2e-3, "{seen} instead of {expected}");
+    // Measured 1.1e-4 and less; margin 2.
+    assert!((seen - expected).abs() < 2.5e-4, "{seen} instead of {expected}");
     let unshadowed = mean(&paths(&scene, &narrow_view(), 0, 64)).x;
     assert!((unshadowed - 1.0).abs() < 1e-3, "{unshadowed}");
 }
@@ -71,7 +72,8 @@ fn a_blended_square_hides_its_share() {
     scene.environment = Some(Environment::new(EnvironmentImage::constant(Vec3::ONE)));
     let seen = mean(&paths(&scene, &narrow_view(), 1, 1024)).x;
     let expected = 1.0 - 0.25 * form_factor(1.0);
-    assert!((seen - expected).abs() < 2e-3, "{seen} instead of {expected}");
+    // Measured 1.1e-4 and less; margin 2.
+    assert!((seen - expected).abs() < 2.5e-4, "{seen} instead of {expected}");
 }
 
 #[test]
@@ -80,7 +82,8 @@ fn a_shining_square_lights_by_its_form_factor() {
     let scene = covered_floor(0.7, lamp);
     let seen = mean(&paths(&scene, &narrow_view(), 1, 4096)).x;
     let expected = form_factor(0.7);
-    assert!((seen - expected).abs() < 2e-3, "{seen} instead of {expected}");
+    // Measured 1.1e-4 and less; margin 2.
+    assert!((seen - expected).abs() < 2.5e-4, "{seen} instead of {expected}");
     assert_eq!(mean(&paths(&scene, &narrow_view(), 0, 16)).x, 0.0, "unshadowed light does not come from surfaces");
 }
 
