@@ -24,7 +24,7 @@ fn main() -> Result<(), Failure> {
     let folder: PathBuf = std::env::args().nth(1).unwrap_or_else(|| "docs/pictures".into()).into();
     let gpu = Gpu::open(&GpuRequest::default(), GpuOptions::default())?;
     for (name, scene, columns, rows) in [("fresnel", metals(studio::studio())?, 3, 4), ("anisotropic", discs(), 4, 1)] {
-        let view = view(&scene, columns, rows, 150);
+        let view = view(&scene, columns, rows, 130);
         let pixels = frame(&gpu, &scene, &view)?;
         save(&folder.join(format!("{name}.png")), view.size_px, &pixels)?;
     }

@@ -3,6 +3,7 @@
 pub mod bindings;
 mod device;
 pub mod formats;
+pub mod pipeline;
 mod readback;
 
 pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};

@@ -2,7 +2,7 @@
 
 use super::ForwardTarget;
 use crate::gpu::bindings::background_layout;
-use crate::gpu::formats;
+use crate::gpu::pipeline::{FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::{Panorama, entry};
 use crate::shader::types::BackgroundUniform;
 use crate::shader::{Composed, ShaderError, ShaderSources, background_module, create_module};
@@ -85,7 +85,8 @@ impl BackgroundPipeline {
                 self.module.insert((composed, module)).1.clone()
             }
         };
-        let pipeline = create_pipeline(device, &self.layout, &module, target);
+        let into = FullscreenTarget { format: target.format, samples: target.samples, depth_tested: true };
+        let pipeline = fullscreen_pipeline(device, "background", &self.layout, &module, into);
         self.pipelines.insert(target, pipeline.clone());
         Ok(pipeline)
     }
@@ -97,44 +98,4 @@ impl BackgroundPass {
         pass.set_bind_group(0, &self.group, &[]);
         pass.draw(0..3, 0..1);
     }
-}
-
-fn create_pipeline(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    module: &wgpu::ShaderModule,
-    target: ForwardTarget,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("background"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("background"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: formats::DEPTH,
-            depth_write_enabled: Some(false),
-            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
-        multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(target.format.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

@@ -1,6 +1,7 @@
 //! Scene radiance to display values: exposure, tone map, background colour, sRGB.
 
 use crate::gpu::bindings::display_layout;
+use crate::gpu::pipeline::{FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::entry;
 use crate::shader::types::DisplayUniform;
 use crate::shader::{Composed, DisplayFeatures, ShaderError, ShaderSources, create_module, display_module};
@@ -46,7 +47,8 @@ impl DisplayPipelines {
             None => {
                 let composed = display_module(sources, features)?;
                 let module = create_module(device, "display", &composed)?;
-                let pipeline = create_pipeline(device, &self.layout, &module, format);
+                let into = FullscreenTarget { format, samples: 1, depth_tested: false };
+                let pipeline = fullscreen_pipeline(device, "display", &self.layout, &module, into);
                 self.pipelines.insert((features, format), (composed, pipeline.clone()));
                 pipeline
             }
@@ -85,38 +87,4 @@ impl DisplayPass {
         pass.set_bind_group(0, &self.group, &[]);
         pass.draw(0..3, 0..1);
     }
-}
-
-fn create_pipeline(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    module: &wgpu::ShaderModule,
-    format: wgpu::TextureFormat,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("display"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("display"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[Some(format.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }

@@ -1,7 +1,7 @@
 //! Surfaces: every draw with the shader of its features.
 
 use crate::frame::{Draw, FramePlan, PipelineKey};
-use crate::gpu::formats;
+use crate::gpu::pipeline::depth_state;
 use crate::gpu_scene::GpuScene;
 use crate::scene::Topology;
 use crate::shader::{
@@ -139,13 +139,7 @@ fn create_pipeline(
             buffers: &buffers,
         },
         primitive: primitive_state(key),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: formats::DEPTH,
-            depth_write_enabled: Some(!blended),
-            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-            stencil: Default::default(),
-            bias: Default::default(),
-        }),
+        depth_stencil: Some(depth_state(!blended)),
         multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,
