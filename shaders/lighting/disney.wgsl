@@ -4,6 +4,7 @@
 #import "brdf/fd_burley.wgsl"
 #import "brdf/fd_subsurface.wgsl"
 #import "brdf/g1_smith_ggx.wgsl"
+#import "lighting/half_vector.wgsl"
 #import "lighting/lift_view.wgsl"
 
 // The Disney BRDF (docs/disney.md): the published limits and weights.
@@ -87,8 +88,7 @@ fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
 // BRDF times the cosine of the light, 1/sr. `l` is a unit vector toward the light; zero when it is below the horizon.
 fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let NoL = saturate(dot(lobes.n, l));
-    let half_vector = l + lobes.v;
-    let h = half_vector * inverseSqrt(max(dot(half_vector, half_vector), 1e-12));
+    let h = unit_half_vector(l, lobes.v);
     let LoH = saturate(dot(l, h));
 
     // Masking of the light is G1(NoL) / NoL, and the cosine of the light cancels against it.

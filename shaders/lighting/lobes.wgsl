@@ -5,6 +5,7 @@
 #import "lighting/dfg.wgsl"
 #import <fresnel>
 #import <shape>
+#import "lighting/half_vector.wgsl"
 #import "lighting/lift_view.wgsl"
 
 // Below this a punctual light's highlight is a few pixels of f32 noise, and D overflows half floats.
@@ -88,8 +89,7 @@ fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
 // BRDF times the cosine of the light, 1/sr. `l` is a unit vector toward the light; zero when it is below the horizon.
 fn evaluate_lobes(lobes: Lobes, l: vec3f) -> vec3f {
     let NoL = saturate(dot(lobes.n, l));
-    let half_vector = l + lobes.v;
-    let h = half_vector * inverseSqrt(max(dot(half_vector, half_vector), 1e-12));
+    let h = unit_half_vector(l, lobes.v);
     let VoH = saturate(dot(lobes.v, h));
     let F = reflectance(lobes.fresnel, VoH);
     let DV = D_V(lobes.shape, lobes.n, lobes.v, l, h, lobes.NoV, NoL) * lobes.specular_share;

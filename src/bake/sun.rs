@@ -48,9 +48,10 @@ pub fn extract(image: &EnvironmentImage) -> Extracted {
     if cap > LARGEST_CAP_RAD {
         return Extracted { residual, suns };
     }
+    let mut luminances: Vec<f64> = image.texels.iter().map(|texel| luminance(texel.as_dvec3())).collect();
     let mut seen = vec![false; residual.texels.len()];
     for _ in 0..CANDIDATES {
-        match grid.take_brightest(&mut residual, &mut seen, cap) {
+        match grid.take_brightest(&mut residual, &mut luminances, &mut seen, cap) {
             Found::Sun(sun) => suns.push(sun),
             Found::NoSun => {}
             Found::Nothing => break,
@@ -95,10 +96,16 @@ impl Grid {
     }
 
     /// What the brightest texel that is not `seen` belongs to. Its surroundings are seen then, and a sun is gone from
-    /// `image`.
-    fn take_brightest(&self, image: &mut EnvironmentImage, seen: &mut [bool], cap: f64) -> Found {
-        let luminances: Vec<f64> = image.texels.iter().map(|texel| luminance(texel.as_dvec3())).collect();
-        let total: f64 = luminances.iter().enumerate().map(|(i, l)| l * self.solid_angle(i / self.width)).sum();
+    /// `image` and its `luminances`.
+    fn take_brightest(
+        &self,
+        image: &mut EnvironmentImage,
+        luminances: &mut [f64],
+        seen: &mut [bool],
+        cap: f64,
+    ) -> Found {
+        let rows = luminances.chunks_exact(self.width).enumerate();
+        let total: f64 = rows.map(|(row, luminances)| self.solid_angle(row) * luminances.iter().sum::<f64>()).sum();
         let bright = ABOVE_MEAN * total / (4.0 * PI);
         let candidates = (0..luminances.len()).filter(|&i| !seen[i] && luminances[i] > bright);
         let by_luminance = |&a: &usize, &b: &usize| luminances[a].total_cmp(&luminances[b]).then(b.cmp(&a));
@@ -124,6 +131,7 @@ impl Grid {
             Some(sun) => {
                 for &index in &cluster {
                     image.texels[index] = image.texels[index].min(around.as_vec3());
+                    luminances[index] = luminance(image.texels[index].as_dvec3());
                 }
                 Found::Sun(sun)
             }
@@ -135,7 +143,11 @@ impl Grid {
     fn neighbourhood(&self, center: DVec3, cap: f64) -> (Vec<usize>, Vec<usize>) {
         let (cos_cap, cos_ring) = (cap.cos(), (RING * cap).cos());
         let (mut inside, mut ring) = (Vec::new(), Vec::new());
-        for index in 0..self.width * self.height {
+        // Rows further away than the ring is wide have none of it; one more on each side for rounding.
+        let middle = center.y.clamp(-1.0, 1.0).acos() / self.texel_rad;
+        let reach = RING * cap / self.texel_rad + 1.0;
+        let rows = (middle - reach).max(0.0) as usize..((middle + reach).ceil() as usize).min(self.height);
+        for index in rows.start * self.width..rows.end * self.width {
             let cosine = self.direction(index).dot(center);
             if cosine >= cos_cap {
                 inside.push(index);

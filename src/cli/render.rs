@@ -157,6 +157,15 @@ enum ToneMapArg {
     None,
 }
 
+impl From<PrecisionArg> for Precision {
+    fn from(arg: PrecisionArg) -> Self {
+        match arg {
+            PrecisionArg::Half => Self::Half,
+            PrecisionArg::Float => Self::Float,
+        }
+    }
+}
+
 impl From<ToneMapArg> for ToneMap {
     fn from(arg: ToneMapArg) -> Self {
         match arg {
@@ -252,7 +261,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if !args.quiet {
         warnings.iter().for_each(|warning| eprintln!("specula: warning: {warning}"));
     }
-    let bytes = watch.time("encode", || encode(&rendered.picture, &view, args.precision()));
+    let bytes = watch.time("encode", || encode(&rendered.picture, &view, args.driver.precision.into()));
     let bytes = bytes.map_err(|reason| CliError::Write { path: args.output.clone(), reason })?;
     watch.time("write", || output::write(&args.output, &bytes))?;
     write_error_image(args, rendered.standard_error.as_ref())?;
@@ -307,13 +316,6 @@ pub(super) fn load_model(path: &Path, options: &ImportOptions<'_>) -> Result<Imp
 }
 
 impl RenderArgs {
-    fn precision(&self) -> Precision {
-        match self.driver.precision {
-            PrecisionArg::Half => Precision::Half,
-            PrecisionArg::Float => Precision::Float,
-        }
-    }
-
     fn view(&self, scene: &Scene) -> Result<View, CliError> {
         if !self.look.exposure.is_finite() {
             return Err(CliError::Usage("--exposure takes a finite number of stops".into()));
@@ -345,8 +347,7 @@ fn open_gpu(args: &DriverArgs, wanted: RendererArg, warnings: &mut Vec<String>) 
         BackendArg::Dx12 => crate::wgpu::Backends::DX12,
     });
     let request = GpuRequest { adapter: args.adapter.clone(), backends };
-    let precision = if args.precision == PrecisionArg::Float { Precision::Float } else { Precision::Half };
-    match Gpu::open(&request, GpuOptions { precision }) {
+    match Gpu::open(&request, GpuOptions { precision: args.precision.into() }) {
         Ok(gpu) => Ok(Some(gpu)),
         Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => {
             if args.require_gpu || wanted == RendererArg::Gpu {
@@ -373,7 +374,7 @@ fn draw(
     format: Format,
     (progress, watch): (&dyn Progress, &mut Stopwatch),
 ) -> Result<Rendered, CliError> {
-    let options = CaptureOptions { samples: args.driver.msaa, precision: args.precision() };
+    let options = CaptureOptions { samples: args.driver.msaa, precision: args.driver.precision.into() };
     let target = CaptureTarget::new(gpu, view, options)?;
     let maps = watch.time("environment bake", || bake_maps(scene, view.quality, progress));
     let (device, queue) = (&gpu.device, &gpu.queue);

@@ -51,6 +51,7 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "lighting/fresnel_lazanyi.wgsl",
     "lighting/fresnel_schlick.wgsl",
     "lighting/fresnel_tail.wgsl",
+    "lighting/half_vector.wgsl",
     "lighting/lift_view.wgsl",
     "lighting/lights.wgsl",
     "lighting/lit.wgsl",

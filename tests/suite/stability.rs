@@ -39,7 +39,7 @@ const GUARDS: &[(&str, &str, &str)] = &[
     ("lighting/lift_view.wgsl", "NOV_MIN: f32 = 1e-4", "NOV_MIN: f32 = 0.0"),
     ("lighting/lobes.wgsl", "ALPHA_MIN: f32 = 1e-3", "ALPHA_MIN: f32 = 0.0"),
     (
-        "lighting/lobes.wgsl",
+        "lighting/half_vector.wgsl",
         "inverseSqrt(max(dot(half_vector, half_vector), 1e-12))",
         "inverseSqrt(dot(half_vector, half_vector))",
     ),
