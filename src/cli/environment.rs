@@ -1,9 +1,11 @@
 //! Flags that light the scene from around.
 
 use super::error::CliError;
+use crate::bake::environment::{self, BakeOptions};
 use crate::bake::studio;
 use crate::import::environment_from_path;
-use crate::scene::{Environment, EnvironmentImage};
+use crate::progress::Progress;
+use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, Quality, Scene};
 use glam::Vec3;
 use std::path::Path;
 
@@ -43,4 +45,11 @@ impl EnvironmentArgs {
         let rotation_rad = self.env_rotation.to_radians();
         Ok(Some(Environment { rotation_rad, intensity: self.env_intensity, ..Environment::new(image) }))
     }
+}
+
+/// The prefiltered environment of the scene, if it lights anything.
+pub(super) fn bake_maps(scene: &Scene, quality: Quality, progress: &dyn Progress) -> Option<EnvironmentMaps> {
+    let options = BakeOptions { suns: quality.parts_suns(), ..Default::default() };
+    let environment = scene.environment.as_ref().filter(|environment| environment.intensity > 0.0)?;
+    Some(environment::bake(&environment.image, &options, progress))
 }

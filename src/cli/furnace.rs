@@ -8,7 +8,7 @@ mod table;
 
 use super::error::CliError;
 use super::output;
-use super::render::Switch;
+use super::view::Switch;
 use crate::math::parameter::ParameterError;
 use crate::reference::albedo::DirectionalAlbedo;
 use crate::reference::bsdf::SurfaceMaterial;

@@ -4,6 +4,7 @@ mod bake;
 mod camera;
 mod color;
 mod compare;
+mod driver;
 mod environment;
 mod error;
 mod furnace;
@@ -14,7 +15,9 @@ mod progress;
 mod render;
 mod stability;
 mod stats;
+mod subject;
 mod truth;
+mod view;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -1,64 +1,40 @@
 //! `specula render`: a model to a picture.
 
-use super::camera::CameraArgs;
-use super::color::srgb8_from_hex;
-use super::environment::EnvironmentArgs;
+use super::driver::DriverArgs;
+use super::environment::bake_maps;
 use super::error::CliError;
-use super::light::LightArgs;
 use super::output::{self, Format};
-use super::overrides;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
+use super::subject::SubjectArgs;
 use super::truth::TruthArgs;
-use crate::bake::environment::{self, BakeOptions};
-use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, submit};
+use super::view::ViewArgs;
+use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
+use crate::gpu::Gpu;
 use crate::gpu::formats::Precision;
-use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
-use crate::import::{ImportOptions, Imported, SceneChoice, model_from_path, model_from_slice};
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
-use crate::scene::{Background, EnvironmentMaps, Geometry, Quality, RadianceImage, Scene, ToneMap, View};
-use glam::{UVec2, Vec3};
-use std::io::Read;
+use crate::scene::{RadianceImage, Scene, View};
 use std::path::{Path, PathBuf};
-
-/// Pictures larger than this on a side are refused before memory is asked for.
-const SIDE_MAX: u32 = 16384;
 
 #[derive(Debug, clap::Args)]
 pub(super) struct RenderArgs {
-    /// glTF model (.gltf or .glb); - reads it from stdin.
-    model: PathBuf,
+    #[command(flatten)]
+    subject: SubjectArgs,
     /// The picture: .png (display-referred) or .exr (linear radiance); - writes PNG to stdout.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Kind of picture, when the name does not tell.
     #[arg(long)]
     format: Option<Format>,
-    /// Size of the picture in pixels.
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1024x1024", value_parser = parse_size)]
-    size: UVec2,
     #[command(flatten)]
-    environment: EnvironmentArgs,
-    #[command(flatten)]
-    lights: LightArgs,
-    #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    look: LookArgs,
+    view: ViewArgs,
     #[command(flatten)]
     driver: DriverArgs,
     #[command(flatten)]
     truth: TruthArgs,
-    /// Which scene of the file, by number or name, instead of its default.
-    #[arg(long, value_name = "N|NAME")]
-    scene: Option<String>,
-    /// Set a number of materials: their name or index (* stands for any text), a parameter, and its value. A disney.*
-    /// parameter turns a material into a Disney one; colours are #rrggbb or r,g,b; a texture of the parameter goes.
-    #[arg(long = "override", value_name = "NAME.PARAMETER=VALUE")]
-    overrides: Vec<String>,
     /// Write what was drawn and how long it took.
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
@@ -74,139 +50,6 @@ pub(super) struct RenderArgs {
     /// Print neither progress nor warnings.
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-}
-
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Look")]
-struct LookArgs {
-    /// Exposure in stops.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
-    exposure: f32,
-    #[arg(long, value_enum, default_value = "neutral")]
-    tone_map: ToneMapArg,
-    /// transparent, env, or a colour #rrggbb. By default a panorama of yours is seen, and a built-in one is not.
-    #[arg(long, value_name = "transparent|env|#rrggbb", value_parser = parse_background)]
-    background: Option<Background>,
-    /// Give back the energy that single-scattering microfacets lose.
-    #[arg(long, value_enum, default_value = "on")]
-    energy_compensation: Switch,
-    /// How microfacets hide each other, for punctual lights.
-    #[arg(long, value_name = "MODEL", default_value = "smith-correlated", value_parser = parse_geometry)]
-    geometry: Geometry,
-    /// Time against error of light from the environment: split-sum (the baseline), draft, standard or high.
-    #[arg(long, value_name = "TIER", default_value = "standard", value_parser = parse_quality)]
-    quality: Quality,
-}
-
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Renderer")]
-struct DriverArgs {
-    /// auto takes the GPU (a software driver counts as one), and the CPU reference where there is none.
-    #[arg(long, value_enum, default_value = "auto")]
-    renderer: RendererArg,
-    /// Samples a pixel of the rasteriser.
-    #[arg(long, value_name = "1|4", default_value_t = 4)]
-    msaa: u32,
-    /// Precision of the radiance target, and of .exr files.
-    #[arg(long, value_enum, default_value = "half")]
-    precision: PrecisionArg,
-    /// Part of the name of the adapter to use.
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
-    #[arg(long, value_enum)]
-    backend: Option<BackendArg>,
-    /// Fail with exit code 3 when there is no adapter, instead of using the CPU reference renderer.
-    #[arg(long)]
-    require_gpu: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Switch {
-    On,
-    Off,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum RendererArg {
-    Auto,
-    Gpu,
-    Reference,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum PrecisionArg {
-    Half,
-    Float,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum BackendArg {
-    Vulkan,
-    Gl,
-    Metal,
-    Dx12,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum ToneMapArg {
-    Neutral,
-    Aces,
-    Agx,
-    Reinhard,
-    Linear,
-    None,
-}
-
-impl From<PrecisionArg> for Precision {
-    fn from(arg: PrecisionArg) -> Self {
-        match arg {
-            PrecisionArg::Half => Self::Half,
-            PrecisionArg::Float => Self::Float,
-        }
-    }
-}
-
-impl From<ToneMapArg> for ToneMap {
-    fn from(arg: ToneMapArg) -> Self {
-        match arg {
-            ToneMapArg::Neutral => Self::Neutral,
-            ToneMapArg::Aces => Self::Aces,
-            ToneMapArg::Agx => Self::AgX,
-            ToneMapArg::Reinhard => Self::Reinhard,
-            ToneMapArg::Linear => Self::Linear,
-            ToneMapArg::None => Self::None,
-        }
-    }
-}
-
-fn parse_size(text: &str) -> Result<UVec2, String> {
-    let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, such as 1024x768")?;
-    let side = |text: &str| match text.parse::<u32>() {
-        Ok(side) if (1..=SIDE_MAX).contains(&side) => Ok(side),
-        _ => Err(format!("`{text}` is not a number of pixels from 1 to {SIDE_MAX}")),
-    };
-    Ok(UVec2::new(side(width)?, side(height)?))
-}
-
-fn parse_geometry(text: &str) -> Result<Geometry, String> {
-    let names = || Geometry::ALL.map(Geometry::name).join(", ");
-    Geometry::by_name(text).ok_or_else(|| format!("expected one of {}", names()))
-}
-
-fn parse_quality(text: &str) -> Result<Quality, String> {
-    let names = || Quality::ALL.map(Quality::name).join(", ");
-    Quality::by_name(text).ok_or_else(|| format!("expected one of {}", names()))
-}
-
-fn parse_background(text: &str) -> Result<Background, String> {
-    match text {
-        "transparent" => Ok(Background::Transparent),
-        "env" => Ok(Background::Environment),
-        color => {
-            let channels = srgb8_from_hex(color).ok_or("expected transparent, env, or a colour #rrggbb")?;
-            Ok(Background::Color(Vec3::from(channels.map(f32::from)) / 255.0))
-        }
-    }
 }
 
 /// A picture before it is a file.
@@ -233,25 +76,12 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if args.json && args.output == Path::new("-") {
         return Err(CliError::Usage("--json and `-o -` both want stdout; use --stats FILE.json".into()));
     }
-    args.truth.check(args.driver.renderer == RendererArg::Reference)?;
-    let lights = args.lights.parse()?;
+    args.truth.check(args.driver.is_reference())?;
     let progress = StderrProgress::new(args.quiet);
     let mut watch = Stopwatch::default();
-
-    let Imported { mut scene, warnings, .. } = watch.time("decode", || load(args, &progress))?;
-    let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    overrides::apply(&mut scene, &args.overrides)?;
-    scene.environment = watch.time("environment decode", || args.environment.load())?;
-    for light in lights {
-        warnings.extend(light.note);
-        scene.add_light(light.light, light.position_in_world, light.direction_in_world);
-    }
-    let view = args.view(&scene)?;
-
-    let gpu = match args.driver.renderer {
-        RendererArg::Reference => None,
-        wanted => watch.time("device", || open_gpu(&args.driver, wanted, &mut warnings))?,
-    };
+    let (scene, mut warnings) = args.subject.load(&progress, &mut watch)?;
+    let view = args.view.view(&scene, args.subject.has_panorama())?;
+    let gpu = watch.time("device", || args.driver.open(&mut warnings))?;
     let rendered = match gpu {
         Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &mut watch))?,
         None => trace(args, &scene, &view, format, (&progress, &mut watch)),
@@ -261,7 +91,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     if !args.quiet {
         warnings.iter().for_each(|warning| eprintln!("specula: warning: {warning}"));
     }
-    let bytes = watch.time("encode", || encode(&rendered.picture, &view, args.driver.precision.into()));
+    let bytes = watch.time("encode", || encode(&rendered.picture, &view, args.driver.precision()));
     let bytes = bytes.map_err(|reason| CliError::Write { path: args.output.clone(), reason })?;
     watch.time("write", || output::write(&args.output, &bytes))?;
     write_error_image(args, rendered.standard_error.as_ref())?;
@@ -269,7 +99,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let stats = RenderStats {
         schema: "specula-render-stats/1",
         specula: env!("CARGO_PKG_VERSION"),
-        model: args.model.display().to_string(),
+        model: args.subject.model.display().to_string(),
         output: args.output.display().to_string(),
         renderer: if rendered.gpu.is_some() { "gpu" } else { "reference" },
         adapter: rendered.adapter,
@@ -296,76 +126,6 @@ fn report(args: &RenderArgs, stats: &RenderStats) -> Result<(), CliError> {
     Ok(())
 }
 
-fn load(args: &RenderArgs, progress: &dyn Progress) -> Result<Imported, CliError> {
-    let scene = args.scene.as_ref().map(|scene| match scene.parse() {
-        Ok(index) => SceneChoice::Index(index),
-        Err(_) => SceneChoice::Name(scene.clone()),
-    });
-    load_model(&args.model, &ImportOptions { scene, progress, ..Default::default() })
-}
-
-/// The model of a file, or of stdin for `-`.
-pub(super) fn load_model(path: &Path, options: &ImportOptions<'_>) -> Result<Imported, CliError> {
-    if path != Path::new("-") {
-        return Ok(model_from_path(path, options)?);
-    }
-    let mut bytes = Vec::new();
-    let read = std::io::stdin().lock().read_to_end(&mut bytes);
-    read.map_err(|error| CliError::Usage(format!("stdin: cannot read the model: {error}")))?;
-    Ok(model_from_slice(&bytes, "stdin", None, options)?)
-}
-
-impl RenderArgs {
-    fn view(&self, scene: &Scene) -> Result<View, CliError> {
-        if !self.look.exposure.is_finite() {
-            return Err(CliError::Usage("--exposure takes a finite number of stops".into()));
-        }
-        let background = self.look.background.unwrap_or(if self.environment.is_file() {
-            Background::Environment
-        } else {
-            Background::Color(Vec3::splat(0.16))
-        });
-        Ok(View {
-            camera: self.camera.camera(scene, self.size)?,
-            size_px: self.size,
-            exposure_ev: self.look.exposure,
-            tone_map: self.look.tone_map.into(),
-            background,
-            energy_compensation: self.look.energy_compensation == Switch::On,
-            geometry: self.look.geometry,
-            quality: self.look.quality,
-        })
-    }
-}
-
-/// The device, or `None` with a warning when the reference renderer has to do.
-fn open_gpu(args: &DriverArgs, wanted: RendererArg, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
-    let backends = args.backend.map(|backend| match backend {
-        BackendArg::Vulkan => crate::wgpu::Backends::VULKAN,
-        BackendArg::Gl => crate::wgpu::Backends::GL,
-        BackendArg::Metal => crate::wgpu::Backends::METAL,
-        BackendArg::Dx12 => crate::wgpu::Backends::DX12,
-    });
-    let request = GpuRequest { adapter: args.adapter.clone(), backends };
-    match Gpu::open(&request, GpuOptions { precision: args.precision.into() }) {
-        Ok(gpu) => Ok(Some(gpu)),
-        Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => {
-            if args.require_gpu || wanted == RendererArg::Gpu {
-                return Err(CliError::NoAdapter(error));
-            }
-            warnings.push(format!("{error}; the CPU reference renderer draws instead"));
-            Ok(None)
-        }
-        Err(error) => Err(CaptureError::from(error).into()),
-    }
-}
-
-fn bake_maps(scene: &Scene, quality: Quality, progress: &dyn Progress) -> Option<EnvironmentMaps> {
-    let options = BakeOptions { suns: quality.parts_suns(), ..Default::default() };
-    let environment = scene.environment.as_ref().filter(|environment| environment.intensity > 0.0)?;
-    Some(environment::bake(&environment.image, &options, progress))
-}
-
 fn draw(
     args: &RenderArgs,
     gpu: &Gpu,
@@ -374,8 +134,7 @@ fn draw(
     format: Format,
     (progress, watch): (&dyn Progress, &mut Stopwatch),
 ) -> Result<Rendered, CliError> {
-    let options = CaptureOptions { samples: args.driver.msaa, precision: args.driver.precision.into() };
-    let target = CaptureTarget::new(gpu, view, options)?;
+    let target = CaptureTarget::new(gpu, view, args.driver.capture_options())?;
     let maps = watch.time("environment bake", || bake_maps(scene, view.quality, progress));
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
@@ -423,7 +182,7 @@ fn draw(
             environment: uploaded.features.environment,
         }),
         warnings: uploaded.warnings,
-        samples: args.driver.msaa,
+        samples: args.driver.capture_options().samples,
         standard_error: None,
         relative_error: None,
     })
@@ -473,25 +232,4 @@ fn dump_wgsl(renderer: &Renderer, folder: &Path) -> Result<(), CliError> {
         output::write(&folder.join(format!("{name}.wgsl")), text.as_bytes())?;
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sizes_parse() {
-        assert_eq!(parse_size("640x480").unwrap(), UVec2::new(640, 480));
-        for bad in ["640", "0x1", "1x0", "x", "-1x5", "99999x1", "1x1x1"] {
-            assert!(parse_size(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn backgrounds_parse() {
-        assert_eq!(parse_background("#ff0080").unwrap(), Background::Color(Vec3::new(1.0, 0.0, 128.0 / 255.0)));
-        for bad in ["ff0080", "#ff008", "#gg0000", "#ff00801", ""] {
-            assert!(parse_background(bad).is_err(), "{bad}");
-        }
-    }
 }

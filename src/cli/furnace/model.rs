@@ -2,7 +2,7 @@
 
 use super::{Subject, SurfaceKind};
 use crate::cli::error::CliError;
-use crate::cli::render::load_model;
+use crate::cli::subject::load_model;
 use crate::import::ImportOptions;
 use crate::math::color::linear_from_srgb;
 use crate::reference::bsdf::{Anisotropy, SurfaceMaterial, dielectric_reflectance};

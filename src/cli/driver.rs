@@ -1,0 +1,101 @@
+//! Which renderer draws, on which device, how precisely.
+
+use super::error::CliError;
+use crate::capture::{CaptureError, CaptureOptions};
+use crate::gpu::formats::Precision;
+use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Renderer")]
+pub(super) struct DriverArgs {
+    /// auto takes the GPU (a software driver counts as one), and the CPU reference where there is none.
+    #[arg(long, value_enum, default_value = "auto")]
+    renderer: RendererArg,
+    /// Samples a pixel of the rasteriser.
+    #[arg(long, value_name = "1|4", default_value_t = 4)]
+    msaa: u32,
+    /// Precision of the radiance target, and of .exr files.
+    #[arg(long, value_enum, default_value = "half")]
+    precision: PrecisionArg,
+    /// Part of the name of the adapter to use.
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    #[arg(long, value_enum)]
+    backend: Option<BackendArg>,
+    /// Fail with exit code 3 when there is no adapter, instead of using the CPU reference renderer.
+    #[arg(long)]
+    require_gpu: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum RendererArg {
+    Auto,
+    Gpu,
+    Reference,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum PrecisionArg {
+    Half,
+    Float,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum BackendArg {
+    Vulkan,
+    Gl,
+    Metal,
+    Dx12,
+}
+
+impl From<PrecisionArg> for Precision {
+    fn from(arg: PrecisionArg) -> Self {
+        match arg {
+            PrecisionArg::Half => Self::Half,
+            PrecisionArg::Float => Self::Float,
+        }
+    }
+}
+
+impl DriverArgs {
+    /// Whether the reference renderer is asked for.
+    pub(super) fn is_reference(&self) -> bool {
+        self.renderer == RendererArg::Reference
+    }
+
+    pub(super) fn precision(&self) -> Precision {
+        self.precision.into()
+    }
+
+    pub(super) fn capture_options(&self) -> CaptureOptions {
+        CaptureOptions { samples: self.msaa, precision: self.precision() }
+    }
+
+    /// The device, or `None` where the reference renderer is asked for, or has to do, of which a warning tells.
+    ///
+    /// # Errors
+    /// When a GPU is required and there is none, or the device cannot be had.
+    pub(super) fn open(&self, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
+        if self.is_reference() {
+            return Ok(None);
+        }
+        let backends = self.backend.map(|backend| match backend {
+            BackendArg::Vulkan => crate::wgpu::Backends::VULKAN,
+            BackendArg::Gl => crate::wgpu::Backends::GL,
+            BackendArg::Metal => crate::wgpu::Backends::METAL,
+            BackendArg::Dx12 => crate::wgpu::Backends::DX12,
+        });
+        let request = GpuRequest { adapter: self.adapter.clone(), backends };
+        match Gpu::open(&request, GpuOptions { precision: self.precision() }) {
+            Ok(gpu) => Ok(Some(gpu)),
+            Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => {
+                if self.require_gpu || self.renderer == RendererArg::Gpu {
+                    return Err(CliError::NoAdapter(error));
+                }
+                warnings.push(format!("{error}; the CPU reference renderer draws instead"));
+                Ok(None)
+            }
+            Err(error) => Err(CaptureError::from(error).into()),
+        }
+    }
+}

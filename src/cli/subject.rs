@@ -1,0 +1,76 @@
+//! What is looked at: a model, its materials, and the light on it.
+
+use super::environment::EnvironmentArgs;
+use super::error::CliError;
+use super::light::LightArgs;
+use super::overrides;
+use super::stats::Stopwatch;
+use crate::import::{ImportOptions, Imported, SceneChoice, model_from_path, model_from_slice};
+use crate::progress::Progress;
+use crate::scene::Scene;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, clap::Args)]
+pub(super) struct SubjectArgs {
+    /// glTF model (.gltf or .glb); - reads it from stdin.
+    pub(super) model: PathBuf,
+    /// Which scene of the file, by number or name, instead of its default.
+    #[arg(long, value_name = "N|NAME")]
+    scene: Option<String>,
+    /// Set a number of materials: their name or index (* stands for any text), a parameter, and its value. A disney.*
+    /// parameter turns a material into a Disney one; colours are #rrggbb or r,g,b; a texture of the parameter goes.
+    #[arg(long = "override", value_name = "NAME.PARAMETER=VALUE")]
+    overrides: Vec<String>,
+    #[command(flatten)]
+    environment: EnvironmentArgs,
+    #[command(flatten)]
+    lights: LightArgs,
+}
+
+impl SubjectArgs {
+    /// Whether the panorama is a file of the user's.
+    pub(super) fn has_panorama(&self) -> bool {
+        self.environment.is_file()
+    }
+
+    /// The scene with its lights and environment, and what is to be warned of.
+    ///
+    /// # Errors
+    /// When a flag is malformed, or the model or the panorama cannot be read.
+    pub(super) fn load(
+        &self,
+        progress: &dyn Progress,
+        watch: &mut Stopwatch,
+    ) -> Result<(Scene, Vec<String>), CliError> {
+        let lights = self.lights.parse()?;
+        let Imported { mut scene, warnings, .. } = watch.time("decode", || self.import(progress))?;
+        let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        overrides::apply(&mut scene, &self.overrides)?;
+        scene.environment = watch.time("environment decode", || self.environment.load())?;
+        for light in lights {
+            warnings.extend(light.note);
+            scene.add_light(light.light, light.position_in_world, light.direction_in_world);
+        }
+        Ok((scene, warnings))
+    }
+
+    fn import(&self, progress: &dyn Progress) -> Result<Imported, CliError> {
+        let scene = self.scene.as_ref().map(|scene| match scene.parse() {
+            Ok(index) => SceneChoice::Index(index),
+            Err(_) => SceneChoice::Name(scene.clone()),
+        });
+        load_model(&self.model, &ImportOptions { scene, progress, ..Default::default() })
+    }
+}
+
+/// The model of a file, or of stdin for `-`.
+pub(super) fn load_model(path: &Path, options: &ImportOptions<'_>) -> Result<Imported, CliError> {
+    if path != Path::new("-") {
+        return Ok(model_from_path(path, options)?);
+    }
+    let mut bytes = Vec::new();
+    let read = std::io::stdin().lock().read_to_end(&mut bytes);
+    read.map_err(|error| CliError::Usage(format!("stdin: cannot read the model: {error}")))?;
+    Ok(model_from_slice(&bytes, "stdin", None, options)?)
+}
