@@ -1,6 +1,8 @@
 //! Specula: a real-time, physically based glTF renderer on wgpu.
 
 pub mod bake;
+#[cfg(feature = "disk-cache")]
+pub mod cache;
 pub mod capture;
 #[cfg(feature = "cli")]
 pub mod cli;

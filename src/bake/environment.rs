@@ -23,6 +23,10 @@ const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 256, 128, 128, 128, 128, 128, 6
 /// No tile has a smaller interior.
 const SMALLEST_SIDE: u32 = 32;
 
+/// Of what [`bake`] computes: raise it with every change of its results beyond rounding, so that nobody reads what an
+/// older version has stored. A test holds it against them.
+pub const VERSION: u32 = 1;
+
 /// Limits of [`bake`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BakeOptions {
@@ -112,5 +116,7 @@ fn convolve(harmonics: &Harmonics, alpha: f64) -> Panorama {
     harmonics.synthesise(&legendre_coefficients(alpha, degrees), 2 * degrees)
 }
 
+#[cfg(test)]
+mod fingerprint;
 #[cfg(test)]
 mod tests;

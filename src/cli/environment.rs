@@ -3,6 +3,7 @@
 use super::error::CliError;
 use crate::bake::environment::{self, BakeOptions};
 use crate::bake::studio;
+use crate::cache::{EnvironmentCache, Outcome};
 use crate::import::environment_from_path;
 use crate::progress::Progress;
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, Quality, Scene};
@@ -21,6 +22,55 @@ pub(super) struct EnvironmentArgs {
     /// Scale its radiance.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub(super) env_intensity: f64,
+    #[command(flatten)]
+    pub(super) cache: CacheArgs,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct CacheArgs {
+    /// Prefilter the panorama anew, and keep nothing of it for the next time. The files that are kept are in the folder that
+    /// SPECULA_CACHE_DIR names, or else in the system's place for caches.
+    #[arg(long)]
+    no_cache: bool,
+}
+
+/// A prefiltered environment, and what the cache had to do with it.
+#[derive(Debug)]
+pub(super) struct BakedEnvironment {
+    pub(super) maps: EnvironmentMaps,
+    pub(super) cache: CacheUse,
+}
+
+/// For people and for `--stats`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum CacheUse {
+    Hit,
+    Stored,
+    /// Not wanted.
+    Off,
+    /// Wanted, and not possible for this reason.
+    Unavailable(String),
+}
+
+impl CacheUse {
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Hit => "hit",
+            Self::Stored => "stored",
+            Self::Off => "off",
+            Self::Unavailable(_) => "unavailable",
+        }
+    }
+}
+
+impl From<Outcome> for CacheUse {
+    fn from(outcome: Outcome) -> Self {
+        match outcome {
+            Outcome::Hit => Self::Hit,
+            Outcome::Stored => Self::Stored,
+            Outcome::Unavailable(reason) => Self::Unavailable(reason),
+        }
+    }
 }
 
 impl EnvironmentArgs {
@@ -48,8 +98,21 @@ impl EnvironmentArgs {
 }
 
 /// The prefiltered environment of the scene, if it lights anything.
-pub(super) fn bake_maps(scene: &Scene, quality: Quality, progress: &dyn Progress) -> Option<EnvironmentMaps> {
+pub(super) fn bake_maps(
+    scene: &Scene,
+    quality: Quality,
+    cache: &CacheArgs,
+    progress: &dyn Progress,
+) -> Option<BakedEnvironment> {
     let options = BakeOptions { suns: quality.parts_suns(), ..Default::default() };
-    let environment = scene.environment.as_ref().filter(|environment| environment.intensity > 0.0)?;
-    Some(environment::bake(&environment.image, &options, progress))
+    let image = &scene.environment.as_ref().filter(|environment| environment.intensity > 0.0)?.image;
+    let without = |cache| BakedEnvironment { maps: environment::bake(image, &options, progress), cache };
+    Some(match EnvironmentCache::of_user() {
+        _ if cache.no_cache => without(CacheUse::Off),
+        None => without(CacheUse::Unavailable("neither SPECULA_CACHE_DIR nor a home folder is set".into())),
+        Some(cache) => {
+            let (maps, outcome) = cache.bake(image, &options, progress);
+            BakedEnvironment { maps, cache: outcome.into() }
+        }
+    })
 }

@@ -1,7 +1,7 @@
 //! `specula render`: a model to a picture.
 
 use super::driver::DriverArgs;
-use super::environment::bake_maps;
+use super::environment::{CacheUse, bake_maps};
 use super::error::CliError;
 use super::output::{self, Format};
 use super::progress::StderrProgress;
@@ -135,17 +135,22 @@ fn draw(
     (progress, watch): (&dyn Progress, &mut Stopwatch),
 ) -> Result<Rendered, CliError> {
     let target = CaptureTarget::new(gpu, view, args.driver.capture_options())?;
-    let maps = watch.time("environment bake", || bake_maps(scene, view.quality, progress));
+    let baked = watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress));
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
         let renderer = Renderer::new(device, queue);
-        let uploaded = renderer.upload(device, queue, scene, maps.as_ref()).map_err(CaptureError::from)?;
+        let uploaded = renderer
+            .upload(device, queue, scene, baked.as_ref().map(|baked| &baked.maps))
+            .map_err(CaptureError::from)?;
         Ok((renderer, uploaded))
     })?;
     let plan = watch.time("pipelines", || renderer.prepare(device, &uploaded, view, target.forward_target()));
     let plan = plan.map_err(CaptureError::from)?;
     if args.verbose {
         eprintln!("specula: {}\n{plan}", gpu.description());
+        if let Some(CacheUse::Unavailable(reason)) = baked.as_ref().map(|baked| &baked.cache) {
+            eprintln!("specula: warning: the environment is not kept for the next time: {reason}");
+        }
     }
     let wanted = Wanted { radiance: format == Format::Exr, display: format == Format::Png };
     let pending = watch.time("first frame", || -> Result<_, CliError> {
@@ -180,6 +185,7 @@ fn draw(
             environment_bytes: uploaded.bytes.environment,
             punctual_lights: scene.lights_in_world().len() as u32,
             environment: uploaded.features.environment,
+            environment_cache: baked.map(|baked| baked.cache.name()),
         }),
         warnings: uploaded.warnings,
         samples: args.driver.capture_options().samples,

@@ -45,6 +45,8 @@ pub(super) struct GpuStats {
     /// What the scene has, and so what the shaders contain.
     pub(super) punctual_lights: u32,
     pub(super) environment: bool,
+    /// Where its maps have come from: `hit` (a file), `stored`, `off` or `unavailable` (they were baked). None without one.
+    pub(super) environment_cache: Option<&'static str>,
 }
 
 /// The time that one stage took.

@@ -1,6 +1,6 @@
 //! What is looked at: a model, its materials, and the light on it.
 
-use super::environment::EnvironmentArgs;
+use super::environment::{CacheArgs, EnvironmentArgs};
 use super::error::CliError;
 use super::light::LightArgs;
 use super::overrides;
@@ -32,6 +32,11 @@ impl SubjectArgs {
     /// Whether the panorama is a file of the user's.
     pub(super) fn has_panorama(&self) -> bool {
         self.environment.is_file()
+    }
+
+    /// Whether prefiltered panoramas are kept.
+    pub(super) fn cache(&self) -> &CacheArgs {
+        &self.environment.cache
     }
 
     /// The scene with its lights and environment, and what is to be warned of.

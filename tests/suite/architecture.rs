@@ -20,6 +20,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     // The float64 truth, and what is made from it. The renderer reads the baked tables and never the truth.
     ("reference", &["math", "progress", "scene"]),
     ("bake", &["math", "progress", "reference", "scene"]),
+    // What was baked, in files: the only part below the program that writes any.
+    ("cache", &["bake", "progress", "scene"]),
     // How far two pictures are apart.
     ("metrics", &["math", "scene"]),
     // What will be drawn, on the CPU.
@@ -42,6 +44,7 @@ const LAYERS: &[(&str, &[&str])] = &[
 const EVERYTHING: &[&str] = &[
     "app",
     "bake",
+    "cache",
     "capture",
     "cli",
     "frame",
@@ -75,7 +78,8 @@ const CONFINED: &[(&str, &[&str])] = &[
 ];
 
 /// Modules that know nothing of a GPU.
-const WITHOUT_GPU: [&str; 8] = ["math", "progress", "scene", "import", "reference", "bake", "metrics", "frame"];
+const WITHOUT_GPU: [&str; 9] =
+    ["math", "progress", "scene", "import", "reference", "bake", "cache", "metrics", "frame"];
 
 /// What passes share.
 const SHARED_BY_PASSES: [&str; 1] = ["ForwardTarget"];
@@ -220,6 +224,15 @@ fn nothing_has_to_be_kept_equal_by_hand() {
     let pleads = |file: &File| file.text.to_lowercase().contains(plea);
     let offenders = written().into_iter().filter(pleads).map(|file| format!("{} says `{plea}`", file.path));
     assert_none(&offenders.collect::<Vec<_>>());
+}
+
+#[test]
+fn tests_start_the_program_in_one_place() {
+    // It keeps them away from the cache of whoever runs the tests.
+    let variable = concat!("CARGO_BIN", "_EXE");
+    let starts = |file: &File| file.path != "tests/suite/support.rs" && file.text.contains(variable);
+    let offenders = files("tests", "rs").into_iter().filter(starts);
+    assert_none(&offenders.map(|file| format!("{}: use support::program", file.path)).collect::<Vec<_>>());
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! The program as its users start it.
 
-use crate::support::samples;
+use crate::support::{program, samples};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 const SHOWCASE: &str = "assets/showcase.glb";
 
 fn specula(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_specula")).args(arguments).output().unwrap()
+    program().args(arguments).output().unwrap()
 }
 
 /// stderr without what the driver says on its own.
@@ -49,7 +49,7 @@ fn a_picture_is_written_and_reported() {
 #[test]
 fn models_and_pictures_go_through_pipes() {
     let model = std::fs::File::open(SHOWCASE).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_specula"))
+    let output = program()
         .args(["render", "-", "-o", "-", "--size", "40x30", "--background", "transparent"])
         .stdin(Stdio::from(model))
         .output()
@@ -65,7 +65,7 @@ fn without_an_adapter_the_reference_draws() {
     let out = folder.path().join("a.png").display().to_string();
     let run = |more: &[&str]| {
         let arguments = ["render", SHOWCASE, "-o", &out, "--size", "32x24", "--samples", "4"];
-        Command::new(env!("CARGO_BIN_EXE_specula"))
+        program()
             .args(arguments.iter().chain(more))
             .env("VK_DRIVER_FILES", "/nonexistent")
             .env("VK_ICD_FILENAMES", "/nonexistent")

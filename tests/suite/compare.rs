@@ -1,10 +1,11 @@
 //! `specula compare` as its users start it.
 
+use crate::support::program;
 use specula::metrics::Pair;
 use specula::metrics::flip::flip;
 use specula::metrics::heat::heat;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use tempfile::TempDir;
 
 /// Pictures in a folder of their own.
@@ -50,7 +51,7 @@ impl Fixture {
 }
 
 fn compare(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_specula")).arg("compare").args(arguments).output().unwrap()
+    program().arg("compare").args(arguments).output().unwrap()
 }
 
 /// One line on stderr with all of `expected`, or none where nothing is expected, and the exit code.
@@ -182,11 +183,8 @@ fn invisible_colours_are_no_difference() {
 fn a_picture_comes_through_a_pipe() {
     let fixture = Fixture::new();
     let b = fixture.png("b.png", 0);
-    let output = Command::new(env!("CARGO_BIN_EXE_specula"))
-        .args(["compare", "-", &b])
-        .stdin(Stdio::from(std::fs::File::open(&b).unwrap()))
-        .output()
-        .unwrap();
+    let output =
+        program().args(["compare", "-", &b]).stdin(Stdio::from(std::fs::File::open(&b).unwrap())).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert_ends(&["-", "-"], 2, &["only one picture"]);
 }

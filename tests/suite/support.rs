@@ -16,6 +16,14 @@ use specula::scene::{
 };
 use specula::shader::ShaderSources;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The program as its users start it, with no use of their cache: below a file none can be, so every run bakes.
+pub(crate) fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_specula"));
+    command.env("SPECULA_CACHE_DIR", concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
+    command
+}
 
 /// A device for a test; every test opens its own, so that an error belongs to it.
 pub(crate) fn gpu(precision: Precision) -> Gpu {
