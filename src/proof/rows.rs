@@ -237,8 +237,8 @@ pub const TWINS: &[Twin] = &[
         function: "F_multiscatter",
         // GGX has E_avg from 0.409 on.
         grid: || product(&[&UNIT, &[0.04], &[1.0], &[0.4, 0.5, 0.7, 0.9, 0.99, 0.9999, 1.0]]),
-        truth: |x| brdf::F_KullaConty(vec3(x, 0), x[3]).to_array().into(),
-        // The denominator is a difference that is no smaller than E_avg.
+        truth: |x| brdf::F_multiscatter(vec3(x, 0), x[3]).to_array().into(),
+        // Sums and products of what is not negative.
         scale: Scale::Result,
         limit: 16.0 * EPS,
     },

@@ -3,7 +3,9 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use super::albedo::Dfg;
-use super::brdf::{D_GGX, F_KullaConty, F_Schlick, F_Schlick_average, V_SmithGGXCorrelated, f_KullaConty};
+use super::brdf::{
+    D_GGX, F_KullaConty, F_Schlick, F_Schlick_average, F_multiscatter, V_SmithGGXCorrelated, f_KullaConty,
+};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -15,7 +17,7 @@ pub enum Compensation {
     /// Kulla and Conty 2017: a reciprocal lobe of its own.
     KullaConty,
     /// The same lobe with the share of light that leaves at the second and later facets as random walks have it, in place
-    /// of [`E_avg`](Dfg), which is that of the first: see [`later_escape`].
+    /// of [`E_avg`](Dfg), which is that of the first: see [`super::brdf::later_escape`]. What the renderer has.
     KullaContyWalk,
     /// Turquin 2019, "Practical multiple scattering compensation for microfacet models", as Filament has it: the single
     /// lobe times 1 + F0 (1 - E) / E.
@@ -47,7 +49,7 @@ impl Compensation {
         match self {
             Self::None => 0.0,
             Self::KullaConty => F_KullaConty(F_avg, average.albedo()).x * missing,
-            Self::KullaContyWalk => F_KullaConty(F_avg, later_escape(average.albedo())).x * missing,
+            Self::KullaContyWalk => F_multiscatter(F_avg, average.albedo()).x * missing,
             Self::Turquin => single * f0 * missing / E,
             Self::FdezAguera => missing * single * F_avg.x / (1.0 - F_avg.x * missing),
         }
@@ -79,13 +81,6 @@ impl Compensation {
             Self::FdezAguera => albedo / PI,
         }
     }
-}
-
-/// Share of the light at the second and later facets that leaves from there: more than `E_avg`, that of the first, because
-/// light that goes back up starts higher. `E_avg (1 + 0.7 (1 - E_avg))`, fitted to random walks of isotropic facets
-/// (docs/multiscatter.md); for white facets it makes no difference.
-pub fn later_escape(E_avg: f64) -> f64 {
-    E_avg * (1.0 + 0.7 * (1.0 - E_avg))
 }
 
 #[cfg(test)]

@@ -170,6 +170,20 @@ mod tests {
         Microsurface { alpha: DVec2::splat(alpha) }
     }
 
+    /// Where a walk leaves after how many facets, or `None` if it would meet more than `most`.
+    fn leave(surface: Microsurface, NoV: f64, numbers: &mut Numbers, most: u32) -> Option<(DVec3, u32)> {
+        let mut facets = 0;
+        let left = surface.walk(
+            view(NoV),
+            || numbers.next(),
+            |_| {
+                facets += 1;
+                facets <= most
+            },
+        );
+        left.map(|left| (left, facets))
+    }
+
     #[test]
     fn all_light_leaves_white_facets_and_none_of_it_downward() {
         for alpha in [DVec2::splat(0.01), DVec2::splat(1.0), DVec2::new(1.0, 0.1)] {
@@ -178,7 +192,7 @@ mod tests {
                 assert_eq!(albedo.all, [1.0], "{alpha} {NoV}");
                 for index in 0..2000 {
                     let mut numbers = Numbers::new(2, index);
-                    let left = Microsurface { alpha }.walk(view(NoV), || numbers.next(), |_| true).unwrap();
+                    let (left, _) = leave(Microsurface { alpha }, NoV, &mut numbers, LONGEST_WALK).unwrap();
                     assert!(left.z > 0.0 && left.is_normalized(), "{left}");
                 }
             }
@@ -210,16 +224,8 @@ mod tests {
             let E = dfg(alpha.sqrt(), NoV).albedo();
             let sample = |u: DVec2| {
                 let mut numbers = Numbers::new(u.x.to_bits() ^ u.y.to_bits().rotate_left(32), 0);
-                let mut facets = 0;
-                let left = surface.walk(
-                    view(NoV),
-                    || numbers.next(),
-                    |_| {
-                        facets += 1;
-                        facets < 2
-                    },
-                );
-                left.unwrap_or(DVec3::new(1e-3, 1e-4, -1.0).normalize())
+                let left = leave(surface, NoV, &mut numbers, 1);
+                left.map_or(DVec3::new(1e-3, 1e-4, -1.0).normalize(), |(left, _)| left)
             };
             let nadir = |l: DVec3| {
                 let in_cell =
@@ -249,16 +255,7 @@ mod tests {
                 let mut numbers = Numbers::new(seed, index);
                 // Even in NoV^2 is as the cosine has it.
                 let NoV = (from * from + numbers.next() * 0.2).sqrt();
-                let mut facets = 0;
-                let left = surface.walk(
-                    view(NoV),
-                    || numbers.next(),
-                    |_| {
-                        facets += 1;
-                        true
-                    },
-                );
-                let Some(left) = left else { continue };
+                let Some((left, facets)) = leave(surface, NoV, &mut numbers, LONGEST_WALK) else { continue };
                 let ring = left.z * left.z - to * to;
                 count += f64::from(u8::from(facets > 1 && (0.0..0.2).contains(&ring)));
             }

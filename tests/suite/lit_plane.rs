@@ -11,7 +11,7 @@ use specula::gpu::Gpu;
 use specula::gpu::formats::Precision;
 use specula::progress::Silent;
 use specula::reference::albedo::{DfgIntegrator, DirectionalAlbedo};
-use specula::reference::brdf::{F_KullaConty, F_Schlick_average};
+use specula::reference::brdf::{F_Schlick_average, F_multiscatter};
 use specula::reference::bsdf::ModelChoices;
 use specula::reference::disney::albedo::DisneyAlbedo;
 use specula::reference::disney::bsdf::TangentFrame;
@@ -195,7 +195,7 @@ fn split_sum(
     let tail = DfgIntegrator::default().fresnel_tail(r, n.dot(v));
     // `a` of Lazanyi's term, whose cosine average is 1/126.
     let dipped = |F0: DVec3, F90: f64, a: DVec3| {
-        let F_ms = F_KullaConty(F_Schlick_average(F0, F90) - a / 126.0, average.albedo());
+        let F_ms = F_multiscatter(F_Schlick_average(F0, F90) - a / 126.0, average.albedo());
         (dfg.with_fresnel(F0, F90) - a * tail, F_ms * (1.0 - dfg.albedo()))
     };
     let lobe = |F0, F90| dipped(F0, F90, DVec3::ZERO);

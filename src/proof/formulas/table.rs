@@ -369,12 +369,13 @@ pub const FORMULAS: &[(&str, &[Formula])] = &[
             },
             Formula {
                 name: "Multiple scattering",
-                equation: "F_ms = F_avg^2 E_avg / (1 - F_avg (1 - E_avg))",
-                rust: at(BRDF, "F_KullaConty"),
+                equation: "F_ms = F_avg^2 e / (1 - F_avg (1 - e)), e = E_avg (1 + 0.7 (1 - E_avg))",
+                rust: at(BRDF, "F_multiscatter"),
                 wgsl: Some(at("shaders/lobe/multiscatter_kulla_conty.wgsl", "F_multiscatter")),
                 laws: &[
                     at(BSDF, "a_white_metal_reflects_all_light_with_compensation_and_loses_it_without"),
                     at(BSDF, "coloured_rough_metals_lose_at_every_bounce"),
+                    at(BRDF, "facets_give_back_no_more_light_than_met_them"),
                 ],
                 stress: None,
             },
