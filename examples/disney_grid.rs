@@ -19,7 +19,7 @@ use specula::scene::{
 const COLUMNS: u32 = 11;
 
 /// Side of a sphere's cell in the picture, pixels.
-const CELL_PX: u32 = 52;
+const CELL_PX: u32 = 50;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "docs/pictures/disney.png".into());

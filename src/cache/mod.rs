@@ -18,7 +18,7 @@ use key::Key;
 use std::path::PathBuf;
 use store::Store;
 
-/// Bytes of files that a cache keeps unless told otherwise: some forty panoramas of 1024 x 512.
+/// Bytes of files that a cache keeps unless told otherwise: more than fifty panoramas of 1024 x 512.
 pub const DEFAULT_LIMIT_BYTES: u64 = 512 << 20;
 
 /// A folder with prefiltered environments. Threads and processes may share it.
