@@ -50,6 +50,7 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
                 energy_compensation: view.energy_compensation,
                 geometry: view.geometry,
                 quality: view.quality,
+                term: view.term,
                 topology: drawable.topology,
             };
             let cull_back = !features.material.double_sided && drawable.topology == Topology::Triangles;

@@ -10,7 +10,7 @@ use super::microfacet::Distribution;
 use super::microfacet::fresnel::{F_Lazanyi, F_conductor};
 use super::techniques::Facets;
 use crate::math::spaces::orthonormal_basis;
-use crate::scene::{Geometry, MetalFresnel};
+use crate::scene::{Geometry, Lobe, MetalFresnel, Term};
 use glam::{DMat3, DVec2, DVec3};
 
 /// What a material comes to at a point, textures and vertex colours multiplied in.
@@ -59,11 +59,13 @@ pub struct ModelChoices {
     pub energy_compensation: bool,
     /// The tables of directional albedo are of the default; another geometry only changes the lobe itself.
     pub geometry: Geometry,
+    /// The only part of the radiance that is evaluated.
+    pub term: Option<Term>,
 }
 
 impl Default for ModelChoices {
     fn default() -> Self {
-        Self { energy_compensation: true, geometry: Geometry::default() }
+        Self { energy_compensation: true, geometry: Geometry::default(), term: None }
     }
 }
 
@@ -179,9 +181,23 @@ impl<'a> Bsdf<'a> {
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.
     pub fn evaluate(&self, light: DVec3) -> DVec3 {
+        let Parts { dielectric, metal, diffuse } = self.parts(light);
+        (dielectric + diffuse).lerp(metal, self.material.metallic)
+    }
+
+    /// The part of [`Self::evaluate`] that one of the lobes has.
+    pub fn evaluate_lobe(&self, lobe: Lobe, light: DVec3) -> DVec3 {
+        let Parts { dielectric, metal, diffuse } = self.parts(light);
+        match lobe {
+            Lobe::Diffuse => diffuse * (1.0 - self.material.metallic),
+            Lobe::Specular => dielectric.lerp(metal, self.material.metallic),
+        }
+    }
+
+    fn parts(&self, light: DVec3) -> Parts {
         let NoL = self.normal.dot(light).min(1.0);
         if NoL <= 0.0 {
-            return DVec3::ZERO;
+            return Parts::default();
         }
         let light = self.local_from_world * light;
         let h = (light + self.view).normalize_or(DVec3::Z);
@@ -197,9 +213,16 @@ impl<'a> Bsdf<'a> {
         let c = &self.coupling;
         let E_s_l = c.f0 * dfg_l.scale + self.dielectric.f90 * dfg_l.bias + c.F_ms * (1.0 - dfg_l.albedo());
         let diffuse = self.material.base_color * Fd_Coupled(c.E_s_v, E_s_l, c.E_s_avg);
-
-        (dielectric + diffuse).lerp(metal, self.material.metallic)
+        Parts { dielectric, metal, diffuse }
     }
+}
+
+/// What the lobes of a BRDF return, 1/sr, before metal and dielectric are mixed.
+#[derive(Debug, Clone, Copy, Default)]
+struct Parts {
+    dielectric: DVec3,
+    metal: DVec3,
+    diffuse: DVec3,
 }
 
 /// The perceptual roughness whose isotropic facets have about the albedo that these have along a direction of the

@@ -13,30 +13,38 @@ use super::environment::EnvironmentSampler;
 use super::lights;
 use super::surface::Surface;
 use super::techniques::{Draws, Facets, Techniques};
-use crate::scene::{Environment, LightInWorld, LightKind, Scene};
+use crate::scene::{Environment, LightInWorld, LightKind, Lobe, Scene, Term};
 use glam::DVec3;
 
 /// The BSDF of a surface, of whichever model its material is.
 #[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
-enum Model<'a> {
+enum Kind<'a> {
     Standard(Bsdf<'a>),
     Disney(DisneyBsdf),
+}
+
+/// The BSDF of a surface, or one of its lobes.
+struct Model<'a> {
+    kind: Kind<'a>,
+    lobe: Option<Lobe>,
 }
 
 impl Model<'_> {
     /// f(l, v), 1/sr.
     fn evaluate(&self, light: DVec3) -> DVec3 {
-        match self {
-            Self::Standard(bsdf) => bsdf.evaluate(light),
-            Self::Disney(bsdf) => bsdf.evaluate(light),
+        match (&self.kind, self.lobe) {
+            (Kind::Standard(bsdf), None) => bsdf.evaluate(light),
+            (Kind::Standard(bsdf), Some(lobe)) => bsdf.evaluate_lobe(lobe, light),
+            (Kind::Disney(bsdf), None) => bsdf.evaluate(light),
+            (Kind::Disney(bsdf), Some(lobe)) => bsdf.evaluate_lobe(lobe, light),
         }
     }
 
     /// The facets that light is mirrored at.
     fn facets(&self) -> Facets {
-        match self {
-            Self::Standard(bsdf) => bsdf.facets(),
-            Self::Disney(bsdf) => bsdf.facets(),
+        match &self.kind {
+            Kind::Standard(bsdf) => bsdf.facets(),
+            Kind::Disney(bsdf) => bsdf.facets(),
         }
     }
 }
@@ -71,21 +79,32 @@ impl<'a> Lighting<'a> {
     /// Radiance that leaves `surface` along the unit direction `view`, cd/m2: emission and punctual lights exactly, the
     /// environment estimated with one sample of each technique. No shadows and no interreflection (docs/model.md).
     pub fn radiance(&self, surface: &Surface, view: DVec3, draws: &Draws) -> DVec3 {
+        let shows = |of: fn(Term) -> bool| self.choices.term.is_none_or(of);
+        let (emits, mut radiance) = (shows(|term| term == Term::Emission), DVec3::ZERO);
         if surface.unlit {
-            return surface.material.base_color;
+            return if emits { surface.material.base_color } else { radiance };
         }
         let view = lift_view(surface.normal_in_world, view);
         let bsdf = self.model(surface, view);
         let everything_is_seen = |_, _| 1.0;
-        surface.emissive_nits
-            + self.radiance_from_lights(surface, &bsdf, everything_is_seen)
-            + self.radiance_from_environment(surface, view, &bsdf, draws, everything_is_seen) * surface.occlusion
+        if emits {
+            radiance += surface.emissive_nits;
+        }
+        if shows(Term::is_direct) {
+            radiance += self.radiance_from_lights(surface, &bsdf, everything_is_seen);
+        }
+        if shows(Term::is_of_environment) {
+            let reflected = self.radiance_from_environment(surface, view, &bsdf, draws, everything_is_seen);
+            radiance += reflected * surface.occlusion;
+        }
+        radiance
     }
 
     fn model(&self, surface: &Surface, view: DVec3) -> Model<'_> {
         let (n, material) = (surface.normal_in_world, surface.material);
+        let lobe = self.choices.term.and_then(Term::lobe);
         let Some(parameters) = surface.disney else {
-            return Model::Standard(Bsdf::new(&self.albedo, material, n, view, self.choices));
+            return Model { kind: Kind::Standard(Bsdf::new(&self.albedo, material, n, view, self.choices)), lobe };
         };
         let material = DisneyMaterial {
             base_color: material.base_color,
@@ -93,7 +112,8 @@ impl<'a> Lighting<'a> {
             perceptual_roughness: material.perceptual_roughness,
             parameters,
         };
-        Model::Disney(DisneyBsdf::new(&material, TangentFrame::new(n, surface.tangent_in_world), view))
+        let frame = TangentFrame::new(n, surface.tangent_in_world);
+        Model { kind: Kind::Disney(DisneyBsdf::new(&material, frame, view)), lobe }
     }
 
     /// `seen` is the share of light, in [0, 1], that passes along a direction up to a distance in metres.

@@ -60,7 +60,8 @@ pub(super) struct Samples {
 
 impl<'a> Tracer<'a> {
     pub(super) fn new(scene: &'a Scene, view: &'a View, bounces: u32) -> Self {
-        let choices = ModelChoices { energy_compensation: view.energy_compensation, geometry: view.geometry };
+        let term = view.term.filter(|_| bounces == 0);
+        let choices = ModelChoices { energy_compensation: view.energy_compensation, geometry: view.geometry, term };
         Self { view, world: World::new(scene, view), lighting: Lighting::new(scene, choices), bounces }
     }
 

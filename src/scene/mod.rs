@@ -24,7 +24,7 @@ pub use light::{Light, LightInWorld, LightKind};
 pub use material::{AlphaMode, Material, MetalFresnel, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};
 pub use spot_cone::SpotCone;
-pub use view::{Background, Geometry, Quality, ToneMap, View};
+pub use view::{Background, Geometry, Lobe, Quality, Term, ToneMap, View};
 
 use glam::{DMat4, DVec3};
 

@@ -1,7 +1,8 @@
 //! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
 
 use crate::scene::{
-    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, TextureSlot, Topology, UvTransform,
+    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureSlot, Topology,
+    UvTransform,
 };
 use std::fmt;
 
@@ -237,6 +238,8 @@ pub struct ForwardFeatures {
     pub energy_compensation: bool,
     pub geometry: Geometry,
     pub quality: Quality,
+    /// The only part of the radiance that is evaluated.
+    pub term: Option<Term>,
     pub topology: Topology,
 }
 
@@ -281,6 +284,9 @@ impl fmt::Display for ForwardFeatures {
         ];
         parts.extend(flags.into_iter().filter(|(on, _)| *on).map(|(_, name)| name));
         f.write_str(&parts.join("+"))?;
+        if let Some(term) = self.term {
+            write!(f, "+only_{}", term.name().replace(' ', "_"))?;
+        }
         for (slot, texture) in self.material.textures() {
             write!(f, "+{}", slot.name())?;
             if texture.uv_set > 0 || texture.sampler > 0 || texture.transformed {

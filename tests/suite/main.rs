@@ -13,5 +13,6 @@ mod mutants;
 mod shaders;
 mod stability;
 mod support;
+mod terms;
 mod tiers;
 mod twins;

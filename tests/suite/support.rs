@@ -56,6 +56,7 @@ pub(crate) fn front_view(side_px: u32) -> View {
         energy_compensation: true,
         geometry: Default::default(),
         quality: Default::default(),
+        term: None,
     }
 }
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::reference::bsdf::SMALLEST_NOV;
 use crate::reference::techniques::Facets;
-use crate::scene::Disney;
+use crate::scene::{Disney, Lobe};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
@@ -95,9 +95,24 @@ impl DisneyBsdf {
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.
     pub fn evaluate(&self, light: DVec3) -> DVec3 {
+        let [diffuse, specular, clearcoat] = self.parts(light);
+        diffuse + specular + clearcoat
+    }
+
+    /// The part of [`Self::evaluate`] that some of the lobes have.
+    pub fn evaluate_lobe(&self, lobe: Lobe, light: DVec3) -> DVec3 {
+        let [diffuse, specular, clearcoat] = self.parts(light);
+        match lobe {
+            Lobe::Diffuse => diffuse,
+            Lobe::Specular => specular + clearcoat,
+        }
+    }
+
+    /// Diffuse light with sheen, the specular lobe, and the clearcoat.
+    fn parts(&self, light: DVec3) -> [DVec3; 3] {
         let NoL = self.frame.normal.dot(light).min(1.0);
         if NoL <= 0.0 {
-            return DVec3::ZERO;
+            return [DVec3::ZERO; 3];
         }
         let h = (light + self.view).normalize_or(self.frame.normal);
         let [ToH, BoH, NoH] = [self.frame.tangent, self.frame.bitangent, self.frame.normal].map(|axis| axis.dot(h));
@@ -114,7 +129,7 @@ impl DisneyBsdf {
         let Fd = Fd_Burley(self.perceptual_roughness, self.NoV, NoL, LoH);
         let Fss = Fd_Subsurface(self.perceptual_roughness, self.NoV, NoL, LoH);
         let diffuse = self.diffuse * (Fd + (Fss - Fd) * self.subsurface);
-        diffuse + self.sheen * fresnel + specular + self.clearcoat * clearcoat
+        [diffuse + self.sheen * fresnel, specular, DVec3::splat(self.clearcoat * clearcoat)]
     }
 
     /// Separable masking and shadowing over 4 NoV NoL.

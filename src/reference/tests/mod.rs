@@ -23,6 +23,7 @@ pub(in crate::reference) fn view() -> View {
         energy_compensation: true,
         geometry: Geometry::default(),
         quality: Default::default(),
+        term: None,
     }
 }
 
