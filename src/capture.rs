@@ -106,6 +106,32 @@ pub struct CapturedFrame {
     pub display: Option<Vec<u8>>,
 }
 
+/// Records one frame into `encoder`: radiance and, where it is wanted, display light.
+pub fn record(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    encoder: &mut wgpu::CommandEncoder,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+    display: bool,
+) -> Result<FrameStats, CaptureError> {
+    let radiance = target.radiance.create_view(&Default::default());
+    let (color, resolve) = match &target.multisampled {
+        Some(multisampled) => (multisampled, Some(&radiance)),
+        None => (&radiance, None),
+    };
+    let ForwardTarget { format, samples } = target.forward_target();
+    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth };
+    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, encoder, scene, view, &attachments)?;
+    if display {
+        let display = target.display.create_view(&Default::default());
+        let display = (&display, formats::CAPTURED_DISPLAY);
+        renderer.encode_display(&gpu.device, encoder, view, &radiance, display)?;
+    }
+    Ok(stats)
+}
+
 /// Draws one frame and starts its way back.
 pub fn submit(
     gpu: &Gpu,
@@ -116,19 +142,7 @@ pub fn submit(
     wanted: Wanted,
 ) -> Result<PendingFrame, CaptureError> {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("capture") });
-    let radiance = target.radiance.create_view(&Default::default());
-    let (color, resolve) = match &target.multisampled {
-        Some(multisampled) => (multisampled, Some(&radiance)),
-        None => (&radiance, None),
-    };
-    let ForwardTarget { format, samples } = target.forward_target();
-    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth };
-    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, &mut encoder, scene, view, &attachments)?;
-    if wanted.display {
-        let display = target.display.create_view(&Default::default());
-        let display = (&display, formats::CAPTURED_DISPLAY);
-        renderer.encode_display(&gpu.device, &mut encoder, view, &radiance, display)?;
-    }
+    let stats = record(gpu, renderer, &mut encoder, scene, view, target, wanted.display)?;
     let mut read = |on: bool, texture| on.then(|| read_texture(&gpu.device, &mut encoder, texture));
     let radiance = read(wanted.radiance, &target.radiance);
     let display = read(wanted.display, &target.display);
@@ -140,9 +154,7 @@ pub fn submit(
 impl PendingFrame {
     /// Waits until the frame is drawn, but not for its way back.
     pub fn wait_drawn(&self, gpu: &Gpu) -> Result<(), CaptureError> {
-        let poll = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        poll.map_err(|error| GpuError::Failed(format!("waiting for the frame: {error}")))?;
-        Ok(gpu.check()?)
+        Ok(gpu.wait()?)
     }
 
     /// Waits for the frame.

@@ -54,10 +54,7 @@ impl Readback {
             // The receiver is alive until this function returns; a failed send has no one to tell.
             let _ = sender.send(result);
         });
-        gpu.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|error| GpuError::Failed(format!("waiting for the device: {error}")))?;
-        gpu.check()?;
+        gpu.wait()?;
         match receiver.try_recv() {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(GpuError::Failed(format!("mapping the result: {error}"))),
