@@ -71,6 +71,17 @@ impl DriverArgs {
         CaptureOptions { samples: self.msaa, precision: self.precision() }
     }
 
+    /// The adapter that is asked for.
+    pub(super) fn request(&self) -> GpuRequest {
+        let backends = self.backend.map(|backend| match backend {
+            BackendArg::Vulkan => crate::wgpu::Backends::VULKAN,
+            BackendArg::Gl => crate::wgpu::Backends::GL,
+            BackendArg::Metal => crate::wgpu::Backends::METAL,
+            BackendArg::Dx12 => crate::wgpu::Backends::DX12,
+        });
+        GpuRequest { adapter: self.adapter.clone(), backends }
+    }
+
     /// The device, or `None` where the reference renderer is asked for, or has to do, of which a warning tells.
     ///
     /// # Errors
@@ -79,14 +90,7 @@ impl DriverArgs {
         if self.is_reference() {
             return Ok(None);
         }
-        let backends = self.backend.map(|backend| match backend {
-            BackendArg::Vulkan => crate::wgpu::Backends::VULKAN,
-            BackendArg::Gl => crate::wgpu::Backends::GL,
-            BackendArg::Metal => crate::wgpu::Backends::METAL,
-            BackendArg::Dx12 => crate::wgpu::Backends::DX12,
-        });
-        let request = GpuRequest { adapter: self.adapter.clone(), backends };
-        match Gpu::open(&request, GpuOptions { precision: self.precision() }) {
+        match Gpu::open(&self.request(), GpuOptions { precision: self.precision() }) {
             Ok(gpu) => Ok(Some(gpu)),
             Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => {
                 if self.require_gpu || self.renderer == RendererArg::Gpu {

@@ -1,6 +1,7 @@
 //! The command line. Results go to stdout, everything else to stderr.
 
 mod bake;
+mod bench;
 mod camera;
 mod color;
 mod compare;
@@ -16,6 +17,8 @@ mod render;
 mod stability;
 mod stats;
 mod subject;
+mod svg;
+mod tier;
 mod truth;
 mod view;
 
@@ -36,6 +39,8 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
     Furnace(Box<furnace::FurnaceArgs>),
+    /// Measure what settings cost in time and gain in error against the reference renderer.
+    Bench(Box<bench::BenchArgs>),
     /// Compare two pictures, PNG with PNG or EXR with EXR: pixels, PSNR, SSIM, FLIP.
     Compare(Box<compare::CompareArgs>),
     /// Regenerate the tables that are part of the program.
@@ -51,6 +56,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Furnace(args) => furnace::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),

@@ -7,6 +7,7 @@ use super::output::{self, Format};
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
 use super::subject::SubjectArgs;
+use super::tier::{TierArgs, TierStats};
 use super::truth::TruthArgs;
 use super::view::ViewArgs;
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
@@ -33,6 +34,8 @@ pub(super) struct RenderArgs {
     view: ViewArgs,
     #[command(flatten)]
     driver: DriverArgs,
+    #[command(flatten)]
+    tier: TierArgs,
     #[command(flatten)]
     truth: TruthArgs,
     /// Write what was drawn and how long it took.
@@ -77,11 +80,16 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("--json and `-o -` both want stdout; use --stats FILE.json".into()));
     }
     args.truth.check(args.driver.is_reference())?;
+    if args.tier.is_asked() && args.driver.is_reference() {
+        return Err(CliError::Usage("--max-error and --max-ms choose a tier of the GPU; leave out --renderer".into()));
+    }
     let progress = StderrProgress::new(args.quiet);
     let mut watch = Stopwatch::default();
     let (scene, mut warnings) = args.subject.load(&progress, &mut watch)?;
-    let view = args.view.view(&scene, args.subject.has_panorama())?;
+    let mut view = args.view.view(&scene, args.subject.has_panorama())?;
     let gpu = watch.time("device", || args.driver.open(&mut warnings))?;
+    let tier = watch
+        .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
     let rendered = match gpu {
         Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &mut watch))?,
         None => trace(args, &scene, &view, format, (&progress, &mut watch)),
@@ -106,11 +114,31 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         size_px: view.size_px.to_array(),
         samples: rendered.samples,
         relative_error: rendered.relative_error,
+        tier,
         gpu: rendered.gpu,
         milliseconds: watch.stages(),
         warnings,
     };
     report(args, &stats)
+}
+
+/// Puts the tier that the limits on error and time ask for into the view.
+fn choose_tier(
+    args: &RenderArgs,
+    gpu: Option<&Gpu>,
+    scene: &Scene,
+    view: &mut View,
+    (progress, warnings): (&StderrProgress, &mut Vec<String>),
+) -> Result<Option<TierStats>, CliError> {
+    let Some(gpu) = gpu.filter(|_| args.tier.is_asked()) else { return Ok(None) };
+    let options = args.driver.capture_options();
+    let (quality, stats) = args.tier.choose(gpu, (scene, view), options, (progress, warnings))?;
+    view.quality = quality;
+    progress.finish();
+    if !args.quiet {
+        eprintln!("specula: {stats}");
+    }
+    Ok(Some(stats))
 }
 
 fn report(args: &RenderArgs, stats: &RenderStats) -> Result<(), CliError> {
@@ -165,12 +193,7 @@ fn draw(
     };
     Ok(Rendered {
         picture,
-        adapter: Some(AdapterStats {
-            name: gpu.info.name.clone(),
-            kind: format!("{:?}", gpu.info.device_type),
-            backend: gpu.info.backend.to_string(),
-            driver: format!("{} {}", gpu.info.driver, gpu.info.driver_info).trim().to_owned(),
-        }),
+        adapter: Some(AdapterStats::of(gpu)),
         gpu: Some(GpuStats {
             draws: stats.draws,
             triangles: stats.triangles,

@@ -34,6 +34,12 @@ impl SubjectArgs {
         self.environment.is_file()
     }
 
+    /// What lights the scene from around, as it was asked for, without the folder of a file.
+    pub(super) fn environment_name(&self) -> &str {
+        let name = Path::new(&self.environment.env).file_name().and_then(|name| name.to_str());
+        name.unwrap_or(&self.environment.env)
+    }
+
     /// The scene with its lights and environment, and what is to be warned of.
     ///
     /// # Errors
