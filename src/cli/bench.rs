@@ -19,7 +19,7 @@ use super::truth::parse_error;
 use super::view::ViewArgs;
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, GpuOptions};
-use crate::metrics::truth::SquaredError;
+use crate::metrics::truth::RelativeError;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::scene::{Quality, Scene, View};
@@ -181,24 +181,23 @@ pub(super) struct Light<'a> {
 
 impl Light<'_> {
     /// The error of a setting, whatever its samples.
-    pub(super) fn error(&mut self, setting: Setting, progress: &dyn Progress) -> Result<SquaredError, CliError> {
+    pub(super) fn error(&mut self, setting: Setting, progress: &dyn Progress) -> Result<RelativeError, CliError> {
         let shot = self.stage.shot(setting.with_one_sample(), self.view, progress)?;
         Ok(self.truth.error(&self.stage.radiance(&shot, None)?))
     }
 
-    /// The error of each term in every tier, over the radiance of all terms together.
+    /// The error of each term in every tier, relative to the radiance of all terms together.
     fn terms(&mut self, base: Setting, tiers: bool, progress: &dyn Progress) -> Result<Vec<TermRow>, CliError> {
         let mut rows = Vec::new();
         for quality in Quality::ALL.into_iter().filter(|&quality| tiers || quality == base.quality) {
             let setting = Setting { quality, ..base }.with_one_sample();
             let shot = self.stage.shot(setting, self.view, progress)?;
-            let power = self.truth.error(&self.stage.radiance(&shot, None)?).power;
             let mut errors = Vec::new();
             for term in self.truth.terms() {
                 let actual = self.stage.radiance(&shot, Some(term))?;
                 errors.extend(self.truth.error_of_term(term, &actual).map(|error| (term, error)));
             }
-            rows.push(TermRow::new(quality, &errors, power));
+            rows.push(TermRow::new(quality, &errors));
         }
         Ok(rows)
     }

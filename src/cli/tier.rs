@@ -19,7 +19,7 @@ const FRAMES: u32 = 5;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Choosing the tier")]
 pub(super) struct TierArgs {
-    /// Take the cheapest --quality whose light is at most this far from the reference: relative RMS of the radiance,
+    /// Take the cheapest --quality whose light is at most this far from the reference: RMS of the relative error of radiance,
     /// estimated on a small picture, without the error of edges and textures.
     #[arg(long, value_name = "PERCENT%", value_parser = parse_error, conflicts_with = "quality")]
     max_error: Option<f64>,
@@ -132,8 +132,7 @@ fn errors(
     for (candidate, setting) in candidates.iter_mut().zip(settings) {
         let error = light.error(*setting, progress)?;
         candidate.error_is_visible = Some(error.is_visible());
-        // A black scene has no error.
-        candidate.error = error.upper_relative_to(error.power).or(Some(0.0));
+        candidate.error = Some(error.upper());
     }
     Ok(())
 }

@@ -86,8 +86,8 @@ struct Mark<'a> {
 
 impl Mark<'_> {
     fn point(&self) -> Option<Point> {
-        let error = self.error.upper().filter(|error| *error > 0.0)?;
-        (self.row.ratio > 0.0).then_some((self.row.ratio, error))
+        let point = (self.row.ratio, self.error.upper);
+        (point.0 > 0.0 && point.1 > 0.0).then_some(point)
     }
 }
 
@@ -103,8 +103,8 @@ pub(super) fn svg(report: &Report) -> String {
     });
     let middle = LEFT + PICTURE_WIDTH;
     let panels = [
-        Panel { left: LEFT, right: middle, what: "error of the picture", rows: pictures.collect() },
-        Panel { left: middle + LEFT, right: WIDTH - RIGHT, what: "error of the light alone", rows: lights.collect() },
+        Panel { left: LEFT, right: middle, what: "picture", rows: pictures.collect() },
+        Panel { left: middle + LEFT, right: WIDTH - RIGHT, what: "light alone", rows: lights.collect() },
     ];
     let panels: String = panels.into_iter().map(|panel| draw(panel, report.basis.name())).collect();
     document(WIDTH, HEIGHT, &(title(report) + &panels))
@@ -243,7 +243,7 @@ fn axes(body: &mut String, (x, y): (&Axis, &Axis), (time, what): (&str, &str)) {
     let middle = 0.5 * (floor + ceiling);
     let _ = writeln!(
         body,
-        "<text x=\"{at:.1}\" y=\"{middle:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 {at:.1} {middle:.1})\">{what}, relative RMS</text>",
+        "<text x=\"{at:.1}\" y=\"{middle:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 {at:.1} {middle:.1})\">{what}, RMS of the relative error</text>",
         at = left - 54.0,
     );
 }

@@ -6,42 +6,30 @@ use super::settings::Setting;
 use crate::cli::error::CliError;
 use crate::cli::stats::AdapterStats;
 use crate::gpu::formats::Precision;
-use crate::metrics::truth::SquaredError;
+use crate::metrics::truth::RelativeError;
 use crate::scene::{Quality, Term};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// An error relative to the root mean square radiance of the truth.
+/// A relative error.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct Figure {
-    /// None where the truth is black.
-    pub(super) relative: Option<f64>,
+    /// Root mean square, the truth's noise taken out.
+    pub(super) rms: f64,
     /// Whether it stands out from the truth's own noise.
     pub(super) is_visible: bool,
-    /// The smallest error that would.
-    pub(super) smallest_visible: Option<f64>,
+    /// What is drawn and compared: the error, or the smallest that would stand out.
+    pub(super) upper: f64,
 }
 
 impl Figure {
-    fn new(error: &SquaredError, power: f64) -> Self {
-        Self {
-            relative: error.relative_to(power),
-            is_visible: error.is_visible(),
-            smallest_visible: error.smallest_visible(power),
-        }
-    }
-
-    /// Where it is drawn: an error that does not show is at most the smallest that would.
-    pub(super) fn upper(&self) -> Option<f64> {
-        if self.is_visible { self.relative } else { self.smallest_visible }
+    fn new(error: &RelativeError) -> Self {
+        Self { rms: error.rms(), is_visible: error.is_visible(), upper: error.upper() }
     }
 
     fn text(&self) -> String {
-        match self.upper() {
-            Some(error) if self.is_visible => percent(error),
-            Some(error) => format!("< {}", percent(error)),
-            None => "-".into(),
-        }
+        let bound = if self.is_visible { "" } else { "< " };
+        format!("{bound}{}", percent(self.upper))
     }
 }
 
@@ -86,7 +74,7 @@ impl Row {
         setting: &Setting,
         times: FrameTimes,
         ratio: f64,
-        (picture, shading): (&SquaredError, &SquaredError),
+        (picture, shading): (&RelativeError, &RelativeError),
         flip_mean: f64,
     ) -> Self {
         Self {
@@ -103,8 +91,8 @@ impl Row {
             sampling: setting.sampling(),
             times,
             ratio,
-            picture_error: Figure::new(picture, picture.power),
-            shading_error: Figure::new(shading, shading.power),
+            picture_error: Figure::new(picture),
+            shading_error: Figure::new(shading),
             flip_mean,
             is_on_picture_front: false,
             is_on_shading_front: None,
@@ -124,8 +112,8 @@ pub(super) struct TermRow {
 }
 
 impl TermRow {
-    pub(super) fn new(quality: Quality, errors: &[(Term, SquaredError)], power: f64) -> Self {
-        let errors = errors.iter().map(|(term, error)| (term.name(), Figure::new(error, power)));
+    pub(super) fn new(quality: Quality, errors: &[(Term, RelativeError)]) -> Self {
+        let errors = errors.iter().map(|(term, error)| (term.name(), Figure::new(error)));
         Self { quality: quality.name(), errors: errors.collect() }
     }
 }
@@ -154,24 +142,19 @@ impl DisplayRow {
 pub(super) struct TruthReport {
     /// Samples a pixel, of all terms together.
     samples: u32,
-    /// Root mean square standard error, relative to the radiance.
-    noise: Option<f64>,
-    /// The smallest error that stands out from it.
-    smallest_visible: Option<f64>,
+    /// Root mean square of its relative standard error.
+    noise: f64,
+    /// The smallest error that stands out from it, in the base setting.
+    smallest_visible: f64,
 }
 
 impl TruthReport {
-    pub(super) fn new(samples: u32, base: &SquaredError) -> Self {
-        let silent = SquaredError { excess: 0.0, ..*base };
-        let noise = base.noise_relative_to(base.power);
-        Self { samples, noise, smallest_visible: silent.smallest_visible(base.power) }
+    pub(super) fn new(samples: u32, base: &RelativeError) -> Self {
+        Self { samples, noise: base.noise_rms(), smallest_visible: base.smallest_visible() }
     }
-}
 
-impl TruthReport {
     fn text(&self) -> String {
-        let share = |value: Option<f64>| value.map_or_else(|| "-".into(), percent);
-        let (noise, smallest) = (share(self.noise), share(self.smallest_visible));
+        let (noise, smallest) = (percent(self.noise), percent(self.smallest_visible));
         format!("{} samples a pixel, its noise of {noise} taken out, errors from {smallest} up show", self.samples)
     }
 }
@@ -275,7 +258,7 @@ impl Report {
         let AdapterStats { name, backend, driver, .. } = &self.adapter;
         format!(
             "`time` is the {} of a frame over the base's, median of {} rounds, on {name} ({backend}, {driver}), {}x{} pixels.\n\
-             `picture` is the RMS error over the RMS of the radiance, edges and textures included; truth: {}.\n\
+             `picture` is the RMS of the relative error of radiance, edges and textures included; truth: {}.\n\
              `shading` is the same of the light alone, through the middle of pixels without mipmaps; truth: {}.\n\
              `<` marks errors that do not stand out from the noise of the truth. `*` marks what no other setting beats in time and error.\n\
              The display pass is off by {:.3} of 255 steps (RMS; {} at most) for the radiance that it is given.\n",
@@ -292,7 +275,7 @@ impl Report {
 }
 
 fn mark_fronts(rows: &mut [Row]) {
-    let point = |row: &Row, error: &Figure| (row.ratio, error.upper().unwrap_or(f64::NAN));
+    let point = |row: &Row, error: &Figure| (row.ratio, error.upper);
     let pictures: Vec<(f64, f64)> = rows.iter().map(|row| point(row, &row.picture_error)).collect();
     for index in front(&pictures) {
         rows[index].is_on_picture_front = true;
@@ -345,10 +328,7 @@ mod tests {
 
     #[test]
     fn errors_below_the_noise_say_so() {
-        let below = SquaredError { excess: 1e-6, uncertainty: 1e-5, power: 1.0, noise: 1e-4 };
-        assert_eq!(Figure::new(&below, below.power).text(), "< 0.447 %");
-        let above = SquaredError { excess: 1e-4, ..below };
-        assert_eq!(Figure::new(&above, above.power).text(), "1.00 %");
-        assert_eq!(Figure::new(&above, 0.0).text(), "-");
+        let figure = |is_visible| Figure { rms: 0.01, is_visible, upper: if is_visible { 0.01 } else { 0.00447 } };
+        assert_eq!([false, true].map(|visible| figure(visible).text()), ["< 0.447 %", "1.00 %"]);
     }
 }

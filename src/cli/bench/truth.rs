@@ -2,7 +2,7 @@
 
 use super::steady::steady_pixels;
 use crate::metrics::flip::flip;
-use crate::metrics::truth::{EstimatedTruth, SquaredError};
+use crate::metrics::truth::{EstimatedTruth, RelativeError, median_nits};
 use crate::metrics::{Pair, PairError};
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
@@ -54,15 +54,6 @@ impl Sampled {
         let none = || RadianceImage { texels: vec![Vec4::ZERO; radiance.texels.len()], ..radiance };
         Self { standard_error: standard_error.unwrap_or_else(none), radiance }
     }
-
-    fn compare(&self, actual: &RadianceImage, counts: impl Fn(usize) -> bool) -> SquaredError {
-        let truth = EstimatedTruth {
-            radiance: &self.radiance,
-            standard_error: &self.standard_error,
-            degrees_of_freedom: f64::from(REPLICATES - 1),
-        };
-        SquaredError::of(actual, &truth, counts)
-    }
 }
 
 /// The unshadowed radiance of a view without its background.
@@ -73,6 +64,8 @@ pub(in crate::cli) struct Truth {
     whole: Sampled,
     /// Pixels that are compared.
     counted: Vec<bool>,
+    /// Errors of darker pixels are relative to this: the median.
+    floor_nits: f64,
     /// Samples a pixel, of all terms together.
     pub(in crate::cli) samples: u32,
 }
@@ -100,7 +93,7 @@ impl Truth {
         let estimated = estimate(scene, &view, &estimate_options);
         let (samples, whole) = (estimated.samples, Sampled::of(estimated));
         let counted = whole.radiance.texels.iter().map(|texel| texel.w > 0.0).collect();
-        Self { view, terms: Vec::new(), whole, counted, samples }
+        Self::new(view, (Vec::new(), whole), counted, samples)
     }
 
     /// The light alone: what is seen through the middle of each pixel, term by term. Every term has samples of its own, so
@@ -116,7 +109,13 @@ impl Truth {
             terms.push((term, Sampled::of(estimated)));
         }
         let whole = sum(&terms, &view);
-        Self { counted: steady_pixels(scene, &view), view, terms, whole, samples }
+        let steady = steady_pixels(scene, &view);
+        Self::new(view, (terms, whole), steady, samples)
+    }
+
+    fn new(view: View, (terms, whole): (Vec<(Term, Sampled)>, Sampled), counted: Vec<bool>, samples: u32) -> Self {
+        let floor_nits = median_nits(&whole.radiance, |i| counted[i]);
+        Self { view, terms, whole, counted, floor_nits, samples }
     }
 
     pub(super) fn terms(&self) -> Vec<Term> {
@@ -125,14 +124,23 @@ impl Truth {
 
     /// Of a picture: over all pixels that show surfaces. Of the light alone: over those that show the same all around
     /// their middle.
-    pub(in crate::cli) fn error(&self, actual: &RadianceImage) -> SquaredError {
-        self.whole.compare(actual, |i| self.counted[i])
+    pub(in crate::cli) fn error(&self, actual: &RadianceImage) -> RelativeError {
+        self.compare(actual, &self.whole)
     }
 
-    /// Of a picture of one term; `None` for a term that the scene has not.
-    pub(super) fn error_of_term(&self, term: Term, actual: &RadianceImage) -> Option<SquaredError> {
+    /// Of a picture of one term, relative to the radiance of all; `None` for a term that the scene has not.
+    pub(super) fn error_of_term(&self, term: Term, actual: &RadianceImage) -> Option<RelativeError> {
         let (_, truth) = self.terms.iter().find(|(other, _)| *other == term)?;
-        Some(truth.compare(actual, |i| self.counted[i]))
+        Some(self.compare(actual, truth))
+    }
+
+    fn compare(&self, actual: &RadianceImage, truth: &Sampled) -> RelativeError {
+        let estimated = EstimatedTruth {
+            radiance: &truth.radiance,
+            standard_error: &truth.standard_error,
+            degrees_of_freedom: f64::from(REPLICATES - 1),
+        };
+        RelativeError::of(actual, &estimated, (&self.whole.radiance, self.floor_nits), |i| self.counted[i])
     }
 
     /// The view as a person would see it: over grey.
