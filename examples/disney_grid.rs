@@ -88,6 +88,7 @@ fn view(cell_px: u32) -> View {
         geometry: Default::default(),
         quality: Default::default(),
         term: None,
+        channel: None,
     }
 }
 

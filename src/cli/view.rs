@@ -126,6 +126,7 @@ impl ViewArgs {
             geometry: self.look.geometry,
             quality: self.look.quality,
             term: None,
+            channel: None,
         })
     }
 }

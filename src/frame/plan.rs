@@ -52,6 +52,7 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
                 quality: view.quality,
                 term: view.term,
                 topology: drawable.topology,
+                channel: view.channel.is_some(),
             };
             let cull_back = !features.material.double_sided && drawable.topology == Topology::Triangles;
             PipelineKey { features, mirrored: drawable.mirrored && drawable.topology == Topology::Triangles, cull_back }
@@ -72,7 +73,8 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
         draws.partition(|draw| keys[draw.drawable].features.material.alpha == Alpha::Blend);
     opaque.sort_by(|a, b| a.pipeline.cmp(&b.pipeline).then(depth(a).total_cmp(&depth(b))));
     blended.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
-    let panorama = view.background == Background::Environment && scene.environment;
+    // A panorama is radiance.
+    let panorama = view.background == Background::Environment && scene.environment && view.channel.is_none();
     FramePlan { scene, pipelines, opaque, panorama, blended }
 }
 

@@ -125,6 +125,7 @@ fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
         quality: Quality::default(),
         term: None,
         topology: Topology::Triangles,
+        channel: false,
     }
 }
 

@@ -107,6 +107,7 @@ pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
         geometry: Geometry::default(),
         quality: Default::default(),
         term: None,
+        channel: None,
     }
 }
 

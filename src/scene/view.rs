@@ -1,6 +1,6 @@
 //! How a scene is turned into a picture: camera, size, exposure, tone map, background.
 
-use super::Camera;
+use super::{Camera, Channel, Components};
 use glam::{UVec2, Vec3};
 
 /// The curve from exposed scene radiance to display light. All but `None` apply the exposure first.
@@ -156,23 +156,14 @@ impl Term {
         matches!(self, Self::EnvironmentDiffuse | Self::EnvironmentSpecular)
     }
 
-    /// Which lobes reflect it; none emits it.
-    pub fn lobe(self) -> Option<Lobe> {
+    /// What of a BRDF reflects it; nothing emits it.
+    pub fn components(self) -> Option<Components> {
         match self {
             Self::Emission => None,
-            Self::DirectDiffuse | Self::EnvironmentDiffuse => Some(Lobe::Diffuse),
-            Self::DirectSpecular | Self::EnvironmentSpecular => Some(Lobe::Specular),
+            Self::DirectDiffuse | Self::EnvironmentDiffuse => Some(Components::DIFFUSE),
+            Self::DirectSpecular | Self::EnvironmentSpecular => Some(Components::SPECULAR),
         }
     }
-}
-
-/// A part of a BRDF.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Lobe {
-    /// Light that was below the surface; sheen counts as such.
-    Diffuse,
-    /// Light from facets, of a clearcoat too, however often they scatter it.
-    Specular,
 }
 
 /// A picture to be taken of a scene.
@@ -192,4 +183,6 @@ pub struct View {
     /// Show only this part of the radiance of surfaces; the background stays. Of unshadowed light: where the reference
     /// renderer follows further bounces it shows everything.
     pub term: Option<Term>,
+    /// What is drawn in place of the radiance; the reference renderer and the display transform do not heed it.
+    pub channel: Option<Channel>,
 }

@@ -241,6 +241,8 @@ pub struct ForwardFeatures {
     /// The only part of the radiance that is evaluated.
     pub term: Option<Term>,
     pub topology: Topology,
+    /// A channel of the surface is drawn in place of its radiance; which one is data.
+    pub channel: bool,
 }
 
 impl ForwardFeatures {
@@ -281,6 +283,7 @@ impl fmt::Display for ForwardFeatures {
             (self.material.alpha == Alpha::Mask, "mask"),
             (self.material.alpha == Alpha::Blend, "blend"),
             (self.material.double_sided, "double_sided"),
+            (self.channel, "channel"),
         ];
         parts.extend(flags.into_iter().filter(|(on, _)| *on).map(|(_, name)| name));
         f.write_str(&parts.join("+"))?;

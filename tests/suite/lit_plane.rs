@@ -284,6 +284,7 @@ fn view(geometry: Geometry) -> View {
         // The truth here is the split sum; tests/suite/tiers.rs has the others.
         quality: Quality::SplitSum,
         term: None,
+        channel: None,
     }
 }
 

@@ -57,6 +57,7 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
             quality: Quality::ALL[slots as usize % 4],
             term: None,
             topology: Topology::Triangles,
+            channel: slots % 9 < 4,
         }
     })
 }

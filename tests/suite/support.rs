@@ -57,6 +57,7 @@ pub(crate) fn front_view(side_px: u32) -> View {
         geometry: Default::default(),
         quality: Default::default(),
         term: None,
+        channel: None,
     }
 }
 

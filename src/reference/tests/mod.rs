@@ -24,6 +24,7 @@ pub(in crate::reference) fn view() -> View {
         geometry: Geometry::default(),
         quality: Default::default(),
         term: None,
+        channel: None,
     }
 }
 
