@@ -87,10 +87,18 @@ impl DriverArgs {
     /// # Errors
     /// When a GPU is required and there is none, or the device cannot be had.
     pub(super) fn open(&self, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
+        self.open_for(self.precision(), warnings)
+    }
+
+    /// The same for a target of another precision.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub(super) fn open_for(&self, precision: Precision, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
         if self.is_reference() {
             return Ok(None);
         }
-        match Gpu::open(&self.request(), GpuOptions { precision: self.precision() }) {
+        match Gpu::open(&self.request(), GpuOptions { precision }) {
             Ok(gpu) => Ok(Some(gpu)),
             Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => {
                 if self.require_gpu || self.renderer == RendererArg::Gpu {

@@ -5,10 +5,12 @@ mod bench;
 mod camera;
 mod color;
 mod compare;
+mod debug_view;
 mod driver;
 mod environment;
 mod error;
 mod furnace;
+mod inspect;
 mod light;
 mod output;
 mod overrides;
@@ -37,6 +39,8 @@ struct Cli {
 enum Command {
     /// Render a model to a picture.
     Render(Box<render::RenderArgs>),
+    /// Say what a model holds, or what made one pixel of its picture.
+    Inspect(Box<inspect::InspectArgs>),
     /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
     Furnace(Box<furnace::FurnaceArgs>),
     /// Measure what settings cost in time and gain in error against the reference renderer.
@@ -55,6 +59,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
         Command::Furnace(args) => furnace::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Compare(args) => compare::run(&args),

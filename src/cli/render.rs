@@ -1,5 +1,6 @@
 //! `specula render`: a model to a picture.
 
+use super::debug_view;
 use super::driver::DriverArgs;
 use super::environment::bake_maps;
 use super::error::CliError;
@@ -17,7 +18,7 @@ use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
-use crate::scene::{RadianceImage, Scene, View};
+use crate::scene::{Channel, RadianceImage, Scene, View};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
@@ -38,6 +39,10 @@ pub(super) struct RenderArgs {
     tier: TierArgs,
     #[command(flatten)]
     truth: TruthArgs,
+    /// Show what shading reads, or one part of the light, instead of the picture: base-color, normal, ibl-specular and
+    /// others (docs/inspect.md). An .exr holds the numbers as they are.
+    #[arg(long, value_name = "NAME", value_parser = debug_view::parse)]
+    debug_view: Option<Channel>,
     /// Write what was drawn and how long it took.
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
@@ -90,8 +95,14 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let gpu = watch.time("device", || args.driver.open(&mut warnings))?;
     let tier = watch
         .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
+    view.channel = args.debug_view;
     let rendered = match gpu {
         Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &mut watch))?,
+        None if args.debug_view.is_some() => {
+            return Err(CliError::Usage(
+                "--debug-view shows what shaders compute; it needs a GPU or a software driver".into(),
+            ));
+        }
         None => trace(args, &scene, &view, format, (&progress, &mut watch)),
     };
     progress.finish();
@@ -175,7 +186,8 @@ fn draw(
     if args.verbose {
         eprintln!("specula: {}\n{plan}", gpu.description());
     }
-    let wanted = Wanted { radiance: format == Format::Exr, display: format == Format::Png };
+    let radiance = format == Format::Exr || view.channel.is_some();
+    let wanted = Wanted { radiance, display: !radiance };
     let pending = watch.time("first frame", || -> Result<_, CliError> {
         let pending = submit(gpu, &mut renderer, &mut uploaded, view, &target, wanted)?;
         pending.wait_drawn(gpu)?;
@@ -186,10 +198,17 @@ fn draw(
     if let Some(folder) = &args.dump_wgsl {
         dump_wgsl(&renderer, folder)?;
     }
-    let picture = match (frame.display, frame.radiance) {
-        (Some(display), _) => Picture::Display(display),
-        (None, Some(radiance)) => Picture::Radiance(radiance),
-        (None, None) => Picture::Display(Vec::new()),
+    let picture = match (frame.display, frame.radiance, view.channel) {
+        (None, Some(image), Some(channel)) => {
+            let image = debug_view::in_units(channel, image, view);
+            match format {
+                Format::Png => Picture::Display(debug_view::picture(channel, &image, view)),
+                Format::Exr => Picture::Radiance(image),
+            }
+        }
+        (Some(display), ..) => Picture::Display(display),
+        (None, Some(radiance), _) => Picture::Radiance(radiance),
+        (None, None, _) => Picture::Display(Vec::new()),
     };
     Ok(Rendered {
         picture,

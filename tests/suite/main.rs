@@ -8,6 +8,7 @@ mod compare;
 mod disney;
 mod frames;
 mod goldens;
+mod inspect;
 mod lights;
 mod lit_plane;
 mod mutants;
