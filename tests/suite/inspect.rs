@@ -15,6 +15,7 @@ use specula::scene::{
     Channel, Component, Components, Disney, Environment, EnvironmentImage, Input, LightKind, LightSource, Material,
     Scene, View,
 };
+use specula::shader::ShaderSources;
 use std::process::{Command, Output};
 
 /// A scene on the device, of whose pictures single pixels are drawn.
@@ -29,9 +30,13 @@ struct Pixels<'a> {
 
 impl<'a> Pixels<'a> {
     fn new(gpu: &'a Gpu, scene: &Scene, view: &View) -> Self {
+        Self::with_shaders(gpu, ShaderSources::default(), scene, view)
+    }
+
+    fn with_shaders(gpu: &'a Gpu, shaders: ShaderSources, scene: &Scene, view: &View) -> Self {
         let bake = |of: &Environment| environment::bake(&of.image, &BakeOptions::default(), &Silent);
         let maps = scene.environment.as_ref().map(bake);
-        let renderer = Renderer::new(&gpu.device, &gpu.queue);
+        let renderer = Renderer::with_shaders(&gpu.device, &gpu.queue, shaders);
         let uploaded = renderer.upload(&gpu.device, &gpu.queue, scene, maps.as_ref()).unwrap();
         let target = CaptureTarget::new(gpu, view, PIXEL_OPTIONS).unwrap();
         let suns = maps.map_or(0, |maps| maps.suns.len() as u32);
@@ -169,6 +174,38 @@ fn lobes_and_lights_are_the_references_and_sum_to_the_picture() {
                 .map(|components| pixels.radiance(LightSource::Punctual, components, pixel));
             let both = halves[0] + halves[1] + details.surface.emissive_nits;
             assert!(apart(both, picture) < 1e-5, "{name} at {pixel}: {both} and {picture}");
+        }
+    }
+}
+
+#[test]
+fn a_fault_shows_in_the_row_that_has_it() {
+    const FILE: &str = "lighting/lobes.wgsl";
+    let (gpu, view, pixel) = (gpu(Precision::Float), front_view(SIDE_PX), PLACES[1]);
+    let mut scene = sphere_scene(materials()[0].1.clone());
+    add_light(&mut scene, LightKind::Point { range_m: None }, 30.0, DVec3::new(2.0, 2.0, 3.0));
+    let inspector = Inspector::new(&scene, &view);
+    let (ray, layers) = inspector.layers(pixel);
+    let expected = inspector.leaving(&inspector.details(&layers[0].hit, &ray).surface, &ray, 1).lights[0];
+    for (from, to, faulty) in [
+        ("(lobes.diffuse_norm * passed)", "lobes.diffuse_norm", Component::Diffuse),
+        ("F * DV", "DV", Component::Specular),
+        ("(lobes.multiscatter_norm * loss)", "lobes.multiscatter_norm", Component::MultipleScattering),
+    ] {
+        let mut shaders = ShaderSources::default();
+        let text = shaders.get(FILE).unwrap().to_owned();
+        assert_eq!(text.matches(from).count(), 1, "`{from}` has to stand there once");
+        shaders.insert(FILE, text.replacen(from, to, 1));
+        let mut pixels = Pixels::with_shaders(&gpu, shaders, &scene, &view);
+        for component in [Component::Diffuse, Component::Specular, Component::MultipleScattering] {
+            let value = pixels.radiance(LightSource::Light(0), Components::of(&[component]), pixel);
+            let differs = apart(value, expected[component as usize]) > 1e-3;
+            assert_eq!(
+                differs,
+                component == faulty,
+                "`{to}`, {component:?}: {value}, {}",
+                expected[component as usize]
+            );
         }
     }
 }
