@@ -87,6 +87,8 @@ fn view(cell_px: u32) -> View {
         energy_compensation: true,
         geometry: Default::default(),
         quality: Default::default(),
+        term: None,
+        channel: None,
     }
 }
 

@@ -1,13 +1,12 @@
 //! Frames without a window: our own device and targets, and the picture back in memory.
 
 use crate::gpu::formats::{self, Precision};
-use crate::gpu::{Gpu, GpuError, Readback, read_texture};
+use crate::gpu::{Gpu, GpuError, Readback, read_texel, read_texture};
 use crate::gpu_scene::GpuScene;
 use crate::passes::ForwardTarget;
 use crate::renderer::{FrameStats, RadianceTarget, RenderError, Renderer};
 use crate::scene::{RadianceImage, View};
-use glam::Vec4;
-use half::f16;
+use glam::{UVec2, Vec4};
 
 /// Why there is no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -98,12 +97,87 @@ pub struct Wanted {
     pub display: bool,
 }
 
+/// What one pixel of a picture holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CapturedPixel {
+    /// Radiance, or what the view's channel is, multiplied with coverage; and coverage.
+    pub radiance: Vec4,
+    /// sRGB with straight alpha, in [0, 1] and in steps of 1/255.
+    pub display: Vec4,
+}
+
+/// Draws one pixel of a picture, counted from the top left and inside of it, in the middle of which it looks, into a
+/// target of [`PIXEL_OPTIONS`].
+pub fn capture_pixel(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+    pixel: UVec2,
+) -> Result<CapturedPixel, CaptureError> {
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("pixel") });
+    record_part(gpu, renderer, &mut encoder, scene, view, target, (true, Some(pixel)))?;
+    let [radiance, display] =
+        [&target.radiance, &target.display].map(|texture| read_texel(&gpu.device, &mut encoder, texture, pixel));
+    gpu.queue.submit([encoder.finish()]);
+    let (radiance, display) = (radiance.wait(gpu)?, display.wait(gpu)?);
+    let mut texels = target.options.precision.texels(&radiance);
+    let code = |i: usize| f32::from(display.get(i).copied().unwrap_or_default()) / 255.0;
+    Ok(CapturedPixel {
+        radiance: texels.pop().unwrap_or_default(),
+        display: Vec4::new(code(0), code(1), code(2), code(3)),
+    })
+}
+
+/// How a pixel is captured: as the reference renderer takes its one sample.
+pub const PIXEL_OPTIONS: CaptureOptions = CaptureOptions { samples: 1, precision: Precision::Float };
+
 /// A frame in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CapturedFrame {
     pub radiance: Option<RadianceImage>,
     /// RGBA8 from the top left: sRGB with straight alpha.
     pub display: Option<Vec<u8>>,
+}
+
+/// Records one frame into `encoder`: radiance and, where it is wanted, display light.
+pub fn record(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    encoder: &mut wgpu::CommandEncoder,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+    display: bool,
+) -> Result<FrameStats, CaptureError> {
+    record_part(gpu, renderer, encoder, scene, view, target, (display, None))
+}
+
+/// [`record`] of all pixels or of one.
+fn record_part(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    encoder: &mut wgpu::CommandEncoder,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+    (display, pixel): (bool, Option<UVec2>),
+) -> Result<FrameStats, CaptureError> {
+    let radiance = target.radiance.create_view(&Default::default());
+    let (color, resolve) = match &target.multisampled {
+        Some(multisampled) => (multisampled, Some(&radiance)),
+        None => (&radiance, None),
+    };
+    let ForwardTarget { format, samples } = target.forward_target();
+    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth, pixel };
+    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, encoder, scene, view, &attachments)?;
+    if display {
+        let display = target.display.create_view(&Default::default());
+        let display = (&display, formats::CAPTURED_DISPLAY);
+        renderer.encode_display(&gpu.device, encoder, view, &radiance, display)?;
+    }
+    Ok(stats)
 }
 
 /// Draws one frame and starts its way back.
@@ -116,19 +190,7 @@ pub fn submit(
     wanted: Wanted,
 ) -> Result<PendingFrame, CaptureError> {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("capture") });
-    let radiance = target.radiance.create_view(&Default::default());
-    let (color, resolve) = match &target.multisampled {
-        Some(multisampled) => (multisampled, Some(&radiance)),
-        None => (&radiance, None),
-    };
-    let ForwardTarget { format, samples } = target.forward_target();
-    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth };
-    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, &mut encoder, scene, view, &attachments)?;
-    if wanted.display {
-        let display = target.display.create_view(&Default::default());
-        let display = (&display, formats::CAPTURED_DISPLAY);
-        renderer.encode_display(&gpu.device, &mut encoder, view, &radiance, display)?;
-    }
+    let stats = record(gpu, renderer, &mut encoder, scene, view, target, wanted.display)?;
     let mut read = |on: bool, texture| on.then(|| read_texture(&gpu.device, &mut encoder, texture));
     let radiance = read(wanted.radiance, &target.radiance);
     let display = read(wanted.display, &target.display);
@@ -140,9 +202,7 @@ pub fn submit(
 impl PendingFrame {
     /// Waits until the frame is drawn, but not for its way back.
     pub fn wait_drawn(&self, gpu: &Gpu) -> Result<(), CaptureError> {
-        let poll = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        poll.map_err(|error| GpuError::Failed(format!("waiting for the frame: {error}")))?;
-        Ok(gpu.check()?)
+        Ok(gpu.wait()?)
     }
 
     /// Waits for the frame.
@@ -150,16 +210,9 @@ impl PendingFrame {
         let display = self.display.map(|readback| readback.wait(gpu)).transpose()?;
         let radiance = self.radiance.map(|readback| readback.wait(gpu)).transpose()?;
         gpu.check()?;
-        let texels = |bytes: Vec<u8>| match self.precision {
-            Precision::Float => bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect::<Vec<Vec4>>(),
-            Precision::Half => {
-                let halves = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned::<[f16; 4]>);
-                halves.map(|texel| Vec4::from_array(texel.map(f16::to_f32))).collect()
-            }
-        };
         let (width, height) = (self.width, self.height);
         Ok(CapturedFrame {
-            radiance: radiance.map(|bytes| RadianceImage { width, height, texels: texels(bytes) }),
+            radiance: radiance.map(|bytes| RadianceImage { width, height, texels: self.precision.texels(&bytes) }),
             display,
         })
     }

@@ -11,8 +11,8 @@ use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
 use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
-use crate::shader::{DisplayFeatures, ShaderError, ShaderSources};
-use glam::{DMat3, DVec2, DVec3, DVec4};
+use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
+use glam::{DMat3, DVec2, DVec3, DVec4, UVec2};
 use wgpu::util::DeviceExt;
 
 /// Why a frame could not be recorded.
@@ -38,6 +38,8 @@ pub struct RadianceTarget<'a> {
     pub resolve: Option<&'a wgpu::TextureView>,
     /// In [`formats::DEPTH`], with the same number of samples.
     pub depth: &'a wgpu::TextureView,
+    /// The only pixel that is drawn, from the top left; inside of the picture. `None` draws all.
+    pub pixel: Option<UVec2>,
 }
 
 /// What a recorded frame consists of.
@@ -132,8 +134,15 @@ impl Renderer {
         });
         let frame_group = scene.frame_group(device, &self.shared, &frame);
         // Without a panorama, an environment background is the black of a scene without light.
-        let coverage = if view.background == Background::Environment && panorama.is_none() { 1.0 } else { 0.0 };
+        let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
+            1.0
+        } else {
+            0.0
+        };
         let mut pass = begin_forward(encoder, target, coverage);
+        if let Some(pixel) = target.pixel {
+            pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
+        }
         draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.opaque);
         if let Some(panorama) = &panorama {
             panorama.draw(&mut pass);
@@ -205,11 +214,14 @@ fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
         Projection::Perspective { .. } => eye.extend(1.0),
         Projection::Orthographic { .. } => (-camera.forward_in_world()).extend(0.0),
     };
+    let [channel, channel_index, channel_components] = view.channel.map_or([0; 3], channel_uniform);
     FrameUniform {
         clip_from_world: (clip_from_view * camera.world_from_view.inverse()).as_mat4().to_cols_array_2d(),
         viewer: viewer.as_vec4().to_array(),
         light_count: scene.light_count,
-        ..Default::default()
+        channel,
+        channel_index,
+        channel_components,
     }
 }
 

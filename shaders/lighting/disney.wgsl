@@ -81,7 +81,7 @@ fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
     disc.alpha_x = sqrt(lobes.alpha_x * lobes.alpha_x + variance);
     disc.alpha_y = sqrt(lobes.alpha_y * lobes.alpha_y + variance);
     disc.clearcoat_alpha = sqrt(lobes.clearcoat_alpha * lobes.clearcoat_alpha + variance);
-    disc.specular_share = specular_share;
+    disc.specular_share = lobes.specular_share * specular_share;
     return disc;
 }
 

@@ -48,5 +48,5 @@ fn environment_radiance(lobes: Lobes) -> vec3f {
     let albedo = E_disney_smooth(r, lobes.NoV);
     let smooth_part = lobes.diffuse * mix(albedo.x, albedo.y, lobes.subsurface) + lobes.sheen * albedo.z;
     let E_over_pi = irradiance_over_pi_sh(environment.irradiance_over_pi, to_environment * lobes.n);
-    return smooth_part * E_over_pi + specular + coat + sun_radiance(lobes);
+    return smooth_part * E_over_pi + specular * lobes.specular_share + coat + sun_radiance(lobes);
 }

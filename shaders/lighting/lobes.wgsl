@@ -82,7 +82,7 @@ fn make_lobes(surface: Surface) -> Lobes {
 fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
     var disc = lobes;
     disc.shape = widened(lobes.shape, variance);
-    disc.specular_share = specular_share;
+    disc.specular_share = lobes.specular_share * specular_share;
     return disc;
 }
 

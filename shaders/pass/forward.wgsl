@@ -2,7 +2,7 @@
 #import "lighting/frame.wgsl"
 #import <interface>
 #import "math/vectors.wgsl"
-#import "surface/visible_point.wgsl"
+#import <output>
 
 @vertex
 fn vertex(in: VertexIn) -> VertexOut {
@@ -11,5 +11,5 @@ fn vertex(in: VertexIn) -> VertexOut {
 
 @fragment
 fn fragment(v: VertexOut, @builtin(front_facing) front_facing: bool) -> @location(0) vec4f {
-    return stored_point(visible_point(v, front_facing));
+    return output(v, front_facing);
 }

@@ -71,22 +71,34 @@ impl DriverArgs {
         CaptureOptions { samples: self.msaa, precision: self.precision() }
     }
 
-    /// The device, or `None` where the reference renderer is asked for, or has to do, of which a warning tells.
-    ///
-    /// # Errors
-    /// When a GPU is required and there is none, or the device cannot be had.
-    pub(super) fn open(&self, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
-        if self.is_reference() {
-            return Ok(None);
-        }
+    /// The adapter that is asked for.
+    pub(super) fn request(&self) -> GpuRequest {
         let backends = self.backend.map(|backend| match backend {
             BackendArg::Vulkan => crate::wgpu::Backends::VULKAN,
             BackendArg::Gl => crate::wgpu::Backends::GL,
             BackendArg::Metal => crate::wgpu::Backends::METAL,
             BackendArg::Dx12 => crate::wgpu::Backends::DX12,
         });
-        let request = GpuRequest { adapter: self.adapter.clone(), backends };
-        match Gpu::open(&request, GpuOptions { precision: self.precision() }) {
+        GpuRequest { adapter: self.adapter.clone(), backends }
+    }
+
+    /// The device, or `None` where the reference renderer is asked for, or has to do, of which a warning tells.
+    ///
+    /// # Errors
+    /// When a GPU is required and there is none, or the device cannot be had.
+    pub(super) fn open(&self, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
+        self.open_for(self.precision(), warnings)
+    }
+
+    /// The same for a target of another precision.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub(super) fn open_for(&self, precision: Precision, warnings: &mut Vec<String>) -> Result<Option<Gpu>, CliError> {
+        if self.is_reference() {
+            return Ok(None);
+        }
+        match Gpu::open(&self.request(), GpuOptions { precision }) {
             Ok(gpu) => Ok(Some(gpu)),
             Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => {
                 if self.require_gpu || self.renderer == RendererArg::Gpu {

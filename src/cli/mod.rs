@@ -1,13 +1,16 @@
 //! The command line. Results go to stdout, everything else to stderr.
 
 mod bake;
+mod bench;
 mod camera;
 mod color;
 mod compare;
+mod debug_view;
 mod driver;
 mod environment;
 mod error;
 mod furnace;
+mod inspect;
 mod light;
 mod output;
 mod overrides;
@@ -16,6 +19,8 @@ mod render;
 mod stability;
 mod stats;
 mod subject;
+mod svg;
+mod tier;
 mod truth;
 mod view;
 
@@ -34,8 +39,12 @@ struct Cli {
 enum Command {
     /// Render a model to a picture.
     Render(Box<render::RenderArgs>),
+    /// Say what a model holds, or what made one pixel of its picture.
+    Inspect(Box<inspect::InspectArgs>),
     /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
     Furnace(Box<furnace::FurnaceArgs>),
+    /// Measure what settings cost in time and gain in error against the reference renderer.
+    Bench(Box<bench::BenchArgs>),
     /// Compare two pictures, PNG with PNG or EXR with EXR: pixels, PSNR, SSIM, FLIP.
     Compare(Box<compare::CompareArgs>),
     /// Regenerate the tables that are part of the program.
@@ -50,7 +59,9 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
         Command::Furnace(args) => furnace::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),

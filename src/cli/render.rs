@@ -1,5 +1,6 @@
 //! `specula render`: a model to a picture.
 
+use super::debug_view;
 use super::driver::DriverArgs;
 use super::environment::{CacheUse, bake_maps};
 use super::error::CliError;
@@ -7,6 +8,7 @@ use super::output::{self, Format};
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
 use super::subject::SubjectArgs;
+use super::tier::{TierArgs, TierStats};
 use super::truth::TruthArgs;
 use super::view::ViewArgs;
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
@@ -16,7 +18,7 @@ use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
-use crate::scene::{RadianceImage, Scene, View};
+use crate::scene::{Channel, RadianceImage, Scene, View};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
@@ -34,7 +36,13 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     driver: DriverArgs,
     #[command(flatten)]
+    tier: TierArgs,
+    #[command(flatten)]
     truth: TruthArgs,
+    /// Show what shading reads, or one part of the light, instead of the picture: base-color, normal, ibl-specular and
+    /// others (docs/inspect.md). An .exr holds the numbers as they are.
+    #[arg(long, value_name = "NAME", value_parser = debug_view::parse)]
+    debug_view: Option<Channel>,
     /// Write what was drawn and how long it took.
     #[arg(long, value_name = "FILE.json")]
     stats: Option<PathBuf>,
@@ -77,13 +85,24 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("--json and `-o -` both want stdout; use --stats FILE.json".into()));
     }
     args.truth.check(args.driver.is_reference())?;
+    if args.tier.is_asked() && args.driver.is_reference() {
+        return Err(CliError::Usage("--max-error and --max-ms choose a tier of the GPU; leave out --renderer".into()));
+    }
     let progress = StderrProgress::new(args.quiet);
     let mut watch = Stopwatch::default();
     let (scene, mut warnings) = args.subject.load(&progress, &mut watch)?;
-    let view = args.view.view(&scene, args.subject.has_panorama())?;
+    let mut view = args.view.view(&scene, args.subject.has_panorama())?;
     let gpu = watch.time("device", || args.driver.open(&mut warnings))?;
+    let tier = watch
+        .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
+    view.channel = args.debug_view;
     let rendered = match gpu {
         Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &mut watch))?,
+        None if args.debug_view.is_some() => {
+            return Err(CliError::Usage(
+                "--debug-view shows what shaders compute; it needs a GPU or a software driver".into(),
+            ));
+        }
         None => trace(args, &scene, &view, format, (&progress, &mut watch)),
     };
     progress.finish();
@@ -106,11 +125,31 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         size_px: view.size_px.to_array(),
         samples: rendered.samples,
         relative_error: rendered.relative_error,
+        tier,
         gpu: rendered.gpu,
         milliseconds: watch.stages(),
         warnings,
     };
     report(args, &stats)
+}
+
+/// Puts the tier that the limits on error and time ask for into the view.
+fn choose_tier(
+    args: &RenderArgs,
+    gpu: Option<&Gpu>,
+    scene: &Scene,
+    view: &mut View,
+    (progress, warnings): (&StderrProgress, &mut Vec<String>),
+) -> Result<Option<TierStats>, CliError> {
+    let Some(gpu) = gpu.filter(|_| args.tier.is_asked()) else { return Ok(None) };
+    let options = args.driver.capture_options();
+    let (quality, stats) = args.tier.choose(gpu, (scene, view), options, (progress, warnings))?;
+    view.quality = quality;
+    progress.finish();
+    if !args.quiet {
+        eprintln!("specula: {stats}");
+    }
+    Ok(Some(stats))
 }
 
 fn report(args: &RenderArgs, stats: &RenderStats) -> Result<(), CliError> {
@@ -152,7 +191,8 @@ fn draw(
             eprintln!("specula: warning: the environment is not kept for the next time: {reason}");
         }
     }
-    let wanted = Wanted { radiance: format == Format::Exr, display: format == Format::Png };
+    let radiance = format == Format::Exr || view.channel.is_some();
+    let wanted = Wanted { radiance, display: !radiance };
     let pending = watch.time("first frame", || -> Result<_, CliError> {
         let pending = submit(gpu, &mut renderer, &mut uploaded, view, &target, wanted)?;
         pending.wait_drawn(gpu)?;
@@ -163,19 +203,21 @@ fn draw(
     if let Some(folder) = &args.dump_wgsl {
         dump_wgsl(&renderer, folder)?;
     }
-    let picture = match (frame.display, frame.radiance) {
-        (Some(display), _) => Picture::Display(display),
-        (None, Some(radiance)) => Picture::Radiance(radiance),
-        (None, None) => Picture::Display(Vec::new()),
+    let picture = match (frame.display, frame.radiance, view.channel) {
+        (None, Some(image), Some(channel)) => {
+            let image = debug_view::in_units(channel, image, view);
+            match format {
+                Format::Png => Picture::Display(debug_view::picture(channel, &image, view)),
+                Format::Exr => Picture::Radiance(image),
+            }
+        }
+        (Some(display), ..) => Picture::Display(display),
+        (None, Some(radiance), _) => Picture::Radiance(radiance),
+        (None, None, _) => Picture::Display(Vec::new()),
     };
     Ok(Rendered {
         picture,
-        adapter: Some(AdapterStats {
-            name: gpu.info.name.clone(),
-            kind: format!("{:?}", gpu.info.device_type),
-            backend: gpu.info.backend.to_string(),
-            driver: format!("{} {}", gpu.info.driver, gpu.info.driver_info).trim().to_owned(),
-        }),
+        adapter: Some(AdapterStats::of(gpu)),
         gpu: Some(GpuStats {
             draws: stats.draws,
             triangles: stats.triangles,

@@ -1,5 +1,7 @@
 //! What a render did, for `--stats` and `--json`.
 
+use super::tier::TierStats;
+use crate::gpu::Gpu;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -20,6 +22,8 @@ pub(super) struct RenderStats {
     pub(super) samples: u32,
     /// Estimated standard error relative to the radiance, where the reference renderer was asked for it.
     pub(super) relative_error: Option<f64>,
+    /// How --max-error and --max-ms found the tier.
+    pub(super) tier: Option<TierStats>,
     pub(super) gpu: Option<GpuStats>,
     pub(super) milliseconds: Vec<Stage>,
     pub(super) warnings: Vec<String>,
@@ -31,6 +35,18 @@ pub(super) struct AdapterStats {
     pub(super) kind: String,
     pub(super) backend: String,
     pub(super) driver: String,
+}
+
+impl AdapterStats {
+    pub(super) fn of(gpu: &Gpu) -> Self {
+        let info = &gpu.info;
+        Self {
+            name: info.name.clone(),
+            kind: format!("{:?}", info.device_type),
+            backend: info.backend.to_string(),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        }
+    }
 }
 
 #[derive(Debug, Serialize)]

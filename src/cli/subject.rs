@@ -28,6 +28,15 @@ pub(super) struct SubjectArgs {
     lights: LightArgs,
 }
 
+/// A scene with its lights and environment, and the file that it comes from.
+pub(super) struct Loaded {
+    pub(super) scene: Scene,
+    pub(super) warnings: Vec<String>,
+    pub(super) scene_names: Vec<Option<String>>,
+    pub(super) scene_index: Option<usize>,
+    pub(super) extensions_used: Vec<String>,
+}
+
 impl SubjectArgs {
     /// Whether the panorama is a file of the user's.
     pub(super) fn has_panorama(&self) -> bool {
@@ -39,6 +48,12 @@ impl SubjectArgs {
         &self.environment.cache
     }
 
+    /// What lights the scene from around, as it was asked for, without the folder of a file.
+    pub(super) fn environment_name(&self) -> &str {
+        let name = Path::new(&self.environment.env).file_name().and_then(|name| name.to_str());
+        name.unwrap_or(&self.environment.env)
+    }
+
     /// The scene with its lights and environment, and what is to be warned of.
     ///
     /// # Errors
@@ -48,8 +63,18 @@ impl SubjectArgs {
         progress: &dyn Progress,
         watch: &mut Stopwatch,
     ) -> Result<(Scene, Vec<String>), CliError> {
+        let Loaded { scene, warnings, .. } = self.load_with_file(progress, watch)?;
+        Ok((scene, warnings))
+    }
+
+    /// The same, and what the file says of itself.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub(super) fn load_with_file(&self, progress: &dyn Progress, watch: &mut Stopwatch) -> Result<Loaded, CliError> {
         let lights = self.lights.parse()?;
-        let Imported { mut scene, warnings, .. } = watch.time("decode", || self.import(progress))?;
+        let imported = watch.time("decode", || self.import(progress))?;
+        let Imported { mut scene, warnings, scene_names, scene_index, extensions_used } = imported;
         let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         overrides::apply(&mut scene, &self.overrides)?;
         scene.environment = watch.time("environment decode", || self.environment.load())?;
@@ -57,7 +82,7 @@ impl SubjectArgs {
             warnings.extend(light.note);
             scene.add_light(light.light, light.position_in_world, light.direction_in_world);
         }
-        Ok((scene, warnings))
+        Ok(Loaded { scene, warnings, scene_names, scene_index, extensions_used })
     }
 
     fn import(&self, progress: &dyn Progress) -> Result<Imported, CliError> {

@@ -64,6 +64,7 @@ impl TruthArgs {
             relative_error: self.error,
             time: self.time,
             standard_error: self.error_image.is_some(),
+            centers: false,
             seed: 0,
             progress,
         }
@@ -79,7 +80,7 @@ impl TruthArgs {
 }
 
 /// `0.5%` or `0.005`.
-fn parse_error(text: &str) -> Result<f64, String> {
+pub(super) fn parse_error(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |percent| (percent, 0.01));
     match number.trim().parse::<f64>() {
         Ok(error) if error > 0.0 && error.is_finite() => Ok(error * scale),

@@ -125,6 +125,8 @@ impl ViewArgs {
             energy_compensation: self.look.energy_compensation == Switch::On,
             geometry: self.look.geometry,
             quality: self.look.quality,
+            term: None,
+            channel: None,
         })
     }
 }

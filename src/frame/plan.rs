@@ -50,7 +50,9 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
                 energy_compensation: view.energy_compensation,
                 geometry: view.geometry,
                 quality: view.quality,
+                term: view.term,
                 topology: drawable.topology,
+                channel: view.channel.is_some(),
             };
             let cull_back = !features.material.double_sided && drawable.topology == Topology::Triangles;
             PipelineKey { features, mirrored: drawable.mirrored && drawable.topology == Topology::Triangles, cull_back }
@@ -71,7 +73,8 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View) -> FramePl
         draws.partition(|draw| keys[draw.drawable].features.material.alpha == Alpha::Blend);
     opaque.sort_by(|a, b| a.pipeline.cmp(&b.pipeline).then(depth(a).total_cmp(&depth(b))));
     blended.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
-    let panorama = view.background == Background::Environment && scene.environment;
+    // A panorama is radiance.
+    let panorama = view.background == Background::Environment && scene.environment && view.channel.is_none();
     FramePlan { scene, pipelines, opaque, panorama, blended }
 }
 

@@ -50,7 +50,8 @@ pub fn usable_features(precision: Precision) -> wgpu::Features {
             wgpu::Features::FLOAT32_BLENDABLE | wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES
         }
     };
-    float_target | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
+    let timestamps = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
+    float_target | timestamps | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
 }
 
 impl Gpu {
@@ -93,6 +94,13 @@ impl Gpu {
         let Some(first) = errors.first().map(|message| one_line(message)) else { return Ok(()) };
         errors.clear();
         Err(GpuError::Failed(first))
+    }
+
+    /// Waits until all that was submitted is done.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let poll = self.device.poll(wgpu::PollType::wait_indefinitely());
+        poll.map_err(|error| GpuError::Failed(format!("waiting for the device: {error}")))?;
+        self.check()
     }
 
     /// Name, API and driver in one line.

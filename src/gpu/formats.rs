@@ -1,5 +1,7 @@
 //! Texture formats by role. No other file names a format.
 
+use glam::Vec4;
+use half::f16;
 use wgpu::TextureFormat;
 
 /// Depth, reversed: 1 at the near plane, 0 at infinity.
@@ -30,6 +32,17 @@ impl Precision {
         match self {
             Self::Half => TextureFormat::Rgba16Float,
             Self::Float => TextureFormat::Rgba32Float,
+        }
+    }
+
+    /// The texels of a texture in [`Self::hdr_format`], read back without padding.
+    pub fn texels(self, bytes: &[u8]) -> Vec<Vec4> {
+        match self {
+            Self::Float => bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect(),
+            Self::Half => {
+                let halves = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned::<[f16; 4]>);
+                halves.map(|texel| Vec4::from_array(texel.map(f16::to_f32))).collect()
+            }
         }
     }
 }

@@ -7,4 +7,4 @@ pub mod pipeline;
 mod readback;
 
 pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};
-pub use readback::{Readback, read_buffer, read_texture};
+pub use readback::{Readback, read_buffer, read_texel, read_texture};

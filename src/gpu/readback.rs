@@ -1,6 +1,7 @@
 //! Copying textures and buffers back to memory.
 
 use super::device::{Gpu, GpuError};
+use glam::UVec2;
 
 /// A texture or a buffer on its way to memory.
 #[derive(Debug)]
@@ -13,8 +14,28 @@ pub struct Readback {
 
 /// Records the copy of level 0 of `texture`; the bytes are there after the encoder was submitted.
 pub fn read_texture(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Readback {
-    let size = texture.size();
-    let texel_bytes = texture.format().block_copy_size(None).unwrap_or(0) as usize;
+    read_region(device, encoder, texture.as_image_copy(), texture.size())
+}
+
+/// The same of one texel.
+pub fn read_texel(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    texture: &wgpu::Texture,
+    at: UVec2,
+) -> Readback {
+    let origin = wgpu::Origin3d { x: at.x, y: at.y, z: 0 };
+    let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };
+    read_region(device, encoder, wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() }, one)
+}
+
+fn read_region(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    source: wgpu::TexelCopyTextureInfo<'_>,
+    size: wgpu::Extent3d,
+) -> Readback {
+    let texel_bytes = source.texture.format().block_copy_size(None).unwrap_or(0) as usize;
     let row_bytes = size.width as usize * texel_bytes;
     let padded_row_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -25,11 +46,7 @@ pub fn read_texture(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, t
     });
     let layout =
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_row_bytes as u32), rows_per_image: None };
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-        size,
-    );
+    encoder.copy_texture_to_buffer(source, wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, size);
     Readback { buffer, row_bytes, padded_row_bytes, rows: size.height as usize }
 }
 
@@ -54,10 +71,7 @@ impl Readback {
             // The receiver is alive until this function returns; a failed send has no one to tell.
             let _ = sender.send(result);
         });
-        gpu.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|error| GpuError::Failed(format!("waiting for the device: {error}")))?;
-        gpu.check()?;
+        gpu.wait()?;
         match receiver.try_recv() {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(GpuError::Failed(format!("mapping the result: {error}"))),

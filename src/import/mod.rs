@@ -92,6 +92,8 @@ pub struct Imported {
     pub scene_names: Vec<Option<String>>,
     /// Which of them this is; `None` if the file has no scenes and all its nodes were taken.
     pub scene_index: Option<usize>,
+    /// The extensions that the file says it uses, whether or not they are among [`SUPPORTED_EXTENSIONS`].
+    pub extensions_used: Vec<String>,
 }
 
 /// Imports a .gltf or .glb file. Files it refers to are read if they lie in its folder or below.
@@ -187,7 +189,8 @@ fn import_model(
         environment: None,
     };
     let scene_names = root.scenes.iter().map(|scene| scene.name.clone()).collect();
-    Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index })
+    let extensions_used = root.extensions_used.clone();
+    Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index, extensions_used })
 }
 
 /// Which materials a primitive has.

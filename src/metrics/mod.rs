@@ -12,6 +12,7 @@ mod pair;
 pub mod ssim;
 #[cfg(test)]
 mod tests;
+pub mod truth;
 
 pub use map::{ErrorMap, Pool};
 pub use pair::{CHANNELS, Mask, Pair, PairError, Side};

@@ -128,7 +128,8 @@ fn create_pipeline(
         .collect();
     let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> =
         vertex_attributes.iter().map(|attribute| Some(buffer_layout(attribute))).collect();
-    let blended = key.features.material.alpha == Alpha::Blend;
+    // Of a channel the nearest surface counts, however little it covers.
+    let blended = key.features.material.alpha == Alpha::Blend && !key.features.channel;
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(&format!("forward/{}", key.features)),
         layout: Some(&layout),

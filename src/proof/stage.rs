@@ -123,7 +123,9 @@ fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
         energy_compensation: true,
         geometry: Geometry::default(),
         quality: Quality::default(),
+        term: None,
         topology: Topology::Triangles,
+        channel: false,
     }
 }
 

@@ -10,8 +10,14 @@ use super::microfacet::Distribution;
 use super::microfacet::fresnel::{F_Lazanyi, F_conductor};
 use super::techniques::Facets;
 use crate::math::spaces::orthonormal_basis;
-use crate::scene::{Geometry, MetalFresnel};
+use crate::scene::{Component, Geometry, MetalFresnel, Term, View};
 use glam::{DMat3, DVec2, DVec3};
+
+/// A number for each component, in the order of [`Component::ALL`].
+pub type PerComponent = [DVec3; Component::ALL.len()];
+
+/// Nothing from any component.
+pub const BLACK: PerComponent = [DVec3::ZERO; Component::ALL.len()];
 
 /// What a material comes to at a point, textures and vertex colours multiplied in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,11 +65,19 @@ pub struct ModelChoices {
     pub energy_compensation: bool,
     /// The tables of directional albedo are of the default; another geometry only changes the lobe itself.
     pub geometry: Geometry,
+    /// The only part of the radiance that is evaluated.
+    pub term: Option<Term>,
+}
+
+impl ModelChoices {
+    pub fn of(view: &View) -> Self {
+        Self { energy_compensation: view.energy_compensation, geometry: view.geometry, term: view.term }
+    }
 }
 
 impl Default for ModelChoices {
     fn default() -> Self {
-        Self { energy_compensation: true, geometry: Geometry::default() }
+        Self { energy_compensation: true, geometry: Geometry::default(), term: None }
     }
 }
 
@@ -179,9 +193,14 @@ impl<'a> Bsdf<'a> {
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.
     pub fn evaluate(&self, light: DVec3) -> DVec3 {
+        self.components(light).into_iter().sum()
+    }
+
+    /// The components whose sum is [`Self::evaluate`].
+    pub fn components(&self, light: DVec3) -> PerComponent {
         let NoL = self.normal.dot(light).min(1.0);
         if NoL <= 0.0 {
-            return DVec3::ZERO;
+            return BLACK;
         }
         let light = self.local_from_world * light;
         let h = (light + self.view).normalize_or(DVec3::Z);
@@ -190,15 +209,18 @@ impl<'a> Bsdf<'a> {
             self.distribution.D(h) * self.geometry.visibility(&self.distribution, self.view, light.with_z(NoL));
         let dfg_l = self.table.dfg(perceptual_roughness_toward(&self.distribution, light), NoL);
         let multiple = f_KullaConty(self.E_v, dfg_l.albedo(), self.E_avg);
-        let dielectric =
-            F_Schlick(self.dielectric.f0, self.dielectric.f90, VoH) * single + self.dielectric.F_ms * multiple;
-        let metal = metal_reflectance(&self.material, VoH) * single + self.metal.F_ms * multiple;
+        let mixed = |dielectric: DVec3, metal: DVec3| dielectric.lerp(metal, self.material.metallic);
+        let fresnel = F_Schlick(self.dielectric.f0, self.dielectric.f90, VoH);
 
         let c = &self.coupling;
         let E_s_l = c.f0 * dfg_l.scale + self.dielectric.f90 * dfg_l.bias + c.F_ms * (1.0 - dfg_l.albedo());
         let diffuse = self.material.base_color * Fd_Coupled(c.E_s_v, E_s_l, c.E_s_avg);
 
-        (dielectric + diffuse).lerp(metal, self.material.metallic)
+        let mut components = BLACK;
+        components[Component::Diffuse as usize] = mixed(diffuse, DVec3::ZERO);
+        components[Component::Specular as usize] = mixed(fresnel, metal_reflectance(&self.material, VoH)) * single;
+        components[Component::MultipleScattering as usize] = mixed(self.dielectric.F_ms, self.metal.F_ms) * multiple;
+        components
     }
 }
 

@@ -23,6 +23,8 @@ pub struct EstimateOptions<'a> {
     pub time: Option<Duration>,
     /// Estimate the error even where no limit asks for it.
     pub standard_error: bool,
+    /// Take every sample in the middle of its pixel, where a rasteriser takes its only one.
+    pub centers: bool,
     /// The same seed gives the same picture, on any number of threads.
     pub seed: u64,
     pub progress: &'a dyn Progress,
@@ -36,6 +38,7 @@ impl Default for EstimateOptions<'_> {
             relative_error: None,
             time: None,
             standard_error: false,
+            centers: false,
             seed: 0,
             progress: &Silent,
         }
@@ -153,7 +156,7 @@ impl<'a> Rendering<'a> {
         let steps = u64::from(indices.end - indices.start);
         let alone = *replicates == 1 && options.samples <= 1;
         // A single sample is where a rasteriser takes it.
-        let place = alone.then_some(DVec2::splat(0.5));
+        let place = (alone || options.centers).then_some(DVec2::splat(0.5));
         pixels.par_chunks_mut((size.x as usize).max(1)).zip(0..size.y).for_each(|(row, y)| {
             for (pixel, x) in row.iter_mut().zip(0..size.x) {
                 for (sum, replicate) in pixel.radiance.iter_mut().zip(0..*replicates) {

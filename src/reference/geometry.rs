@@ -34,6 +34,10 @@ pub struct Hit {
 pub struct Draw<'a> {
     pub primitive: &'a Primitive,
     pub material: &'a Material,
+    /// The node and the mesh that it is of.
+    pub instance: Instance,
+    /// Of the mesh.
+    pub primitive_index: usize,
     pub world_from_object: DMat3,
     /// Takes object-space normals to the world, but for their length. Also for singular matrices.
     pub normal_from_object: DMat3,
@@ -114,9 +118,9 @@ impl<'a> Geometry<'a> {
     pub fn new(scene: &'a Scene, view: &View) -> Self {
         let (mut draws, mut triangles) = (Vec::new(), Vec::new());
         for instance in scene.instances() {
-            for primitive in &scene.meshes[instance.mesh].primitives {
+            for (index, primitive) in scene.meshes[instance.mesh].primitives.iter().enumerate() {
                 place(primitive, &instance, view, draws.len(), &mut triangles);
-                draws.push(draw(primitive, &scene.materials[primitive.material], &instance));
+                draws.push(draw((index, primitive), &scene.materials[primitive.material], &instance));
             }
         }
         triangles.retain(|triangle| triangle.corners.iter().all(|corner| corner.is_finite()));
@@ -146,13 +150,25 @@ impl<'a> Geometry<'a> {
     }
 }
 
-fn draw<'a>(primitive: &'a Primitive, material: &'a Material, instance: &Instance) -> Draw<'a> {
+fn draw<'a>(
+    (primitive_index, primitive): (usize, &'a Primitive),
+    material: &'a Material,
+    instance: &Instance,
+) -> Draw<'a> {
     let world_from_object = DMat3::from_mat4(instance.world_from_object);
     let handedness = if world_from_object.determinant() < 0.0 { -1.0 } else { 1.0 };
     // The cofactor matrix: the inverse transpose without its division by the determinant, but for whose sign it is used.
     let DMat3 { x_axis: x, y_axis: y, z_axis: z } = world_from_object;
     let normal_from_object = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * handedness;
-    Draw { primitive, material, world_from_object, normal_from_object, handedness }
+    Draw {
+        primitive,
+        material,
+        instance: *instance,
+        primitive_index,
+        world_from_object,
+        normal_from_object,
+        handedness,
+    }
 }
 
 fn place(primitive: &Primitive, instance: &Instance, view: &View, draw: usize, triangles: &mut Vec<Triangle>) {

@@ -2,41 +2,56 @@
 
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
+mod parts;
 mod path;
 
+pub use parts::Estimated;
 pub(super) use path::{PathDraws, Paths};
 
 use super::albedo::DirectionalAlbedo;
-use super::bsdf::{Bsdf, ModelChoices, lift_view};
+use super::bsdf::{Bsdf, ModelChoices, PerComponent, lift_view};
 use super::disney::bsdf::{DisneyBsdf, DisneyMaterial, TangentFrame};
 use super::environment::EnvironmentSampler;
 use super::lights;
 use super::surface::Surface;
 use super::techniques::{Draws, Facets, Techniques};
-use crate::scene::{Environment, LightInWorld, LightKind, Scene};
+use crate::scene::{Component, Components, Environment, LightInWorld, LightKind, Scene, Term};
 use glam::DVec3;
 
 /// The BSDF of a surface, of whichever model its material is.
 #[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
-enum Model<'a> {
+enum Kind<'a> {
     Standard(Bsdf<'a>),
     Disney(DisneyBsdf),
+}
+
+/// The BSDF of a surface, or some of its components.
+struct Model<'a> {
+    kind: Kind<'a>,
+    only: Option<Components>,
 }
 
 impl Model<'_> {
     /// f(l, v), 1/sr.
     fn evaluate(&self, light: DVec3) -> DVec3 {
-        match self {
-            Self::Standard(bsdf) => bsdf.evaluate(light),
-            Self::Disney(bsdf) => bsdf.evaluate(light),
+        let Some(only) = self.only else { return self.components(light).into_iter().sum() };
+        let parts = Component::ALL.into_iter().zip(self.components(light));
+        parts.filter(|(component, _)| only.contains(*component)).map(|(_, part)| part).sum()
+    }
+
+    /// The components of f(l, v), 1/sr.
+    fn components(&self, light: DVec3) -> PerComponent {
+        match &self.kind {
+            Kind::Standard(bsdf) => bsdf.components(light),
+            Kind::Disney(bsdf) => bsdf.components(light),
         }
     }
 
     /// The facets that light is mirrored at.
     fn facets(&self) -> Facets {
-        match self {
-            Self::Standard(bsdf) => bsdf.facets(),
-            Self::Disney(bsdf) => bsdf.facets(),
+        match &self.kind {
+            Kind::Standard(bsdf) => bsdf.facets(),
+            Kind::Disney(bsdf) => bsdf.facets(),
         }
     }
 }
@@ -71,21 +86,32 @@ impl<'a> Lighting<'a> {
     /// Radiance that leaves `surface` along the unit direction `view`, cd/m2: emission and punctual lights exactly, the
     /// environment estimated with one sample of each technique. No shadows and no interreflection (docs/model.md).
     pub fn radiance(&self, surface: &Surface, view: DVec3, draws: &Draws) -> DVec3 {
+        let shows = |of: fn(Term) -> bool| self.choices.term.is_none_or(of);
+        let (emits, mut radiance) = (shows(|term| term == Term::Emission), DVec3::ZERO);
         if surface.unlit {
-            return surface.material.base_color;
+            return if emits { surface.material.base_color } else { radiance };
         }
         let view = lift_view(surface.normal_in_world, view);
         let bsdf = self.model(surface, view);
         let everything_is_seen = |_, _| 1.0;
-        surface.emissive_nits
-            + self.radiance_from_lights(surface, &bsdf, everything_is_seen)
-            + self.radiance_from_environment(surface, view, &bsdf, draws, everything_is_seen) * surface.occlusion
+        if emits {
+            radiance += surface.emissive_nits;
+        }
+        if shows(Term::is_direct) {
+            radiance += self.radiance_from_lights(surface, &bsdf, everything_is_seen);
+        }
+        if shows(Term::is_of_environment) {
+            let reflected = self.radiance_from_environment(surface, view, &bsdf, draws, everything_is_seen);
+            radiance += reflected * surface.occlusion;
+        }
+        radiance
     }
 
     fn model(&self, surface: &Surface, view: DVec3) -> Model<'_> {
         let (n, material) = (surface.normal_in_world, surface.material);
+        let only = self.choices.term.and_then(Term::components);
         let Some(parameters) = surface.disney else {
-            return Model::Standard(Bsdf::new(&self.albedo, material, n, view, self.choices));
+            return Model { kind: Kind::Standard(Bsdf::new(&self.albedo, material, n, view, self.choices)), only };
         };
         let material = DisneyMaterial {
             base_color: material.base_color,
@@ -93,16 +119,15 @@ impl<'a> Lighting<'a> {
             perceptual_roughness: material.perceptual_roughness,
             parameters,
         };
-        Model::Disney(DisneyBsdf::new(&material, TangentFrame::new(n, surface.tangent_in_world), view))
+        let frame = TangentFrame::new(n, surface.tangent_in_world);
+        Model { kind: Kind::Disney(DisneyBsdf::new(&material, frame, view)), only }
     }
 
     /// `seen` is the share of light, in [0, 1], that passes along a direction up to a distance in metres.
     fn radiance_from_lights(&self, surface: &Surface, bsdf: &Model<'_>, seen: impl Fn(DVec3, f64) -> f64) -> DVec3 {
         let from_light = |light: &LightInWorld| {
-            let incidence = lights::incidence(light, surface.position_in_world)?;
-            let direction = incidence.direction_in_world;
-            let NoL = surface.normal_in_world.dot(direction);
-            let radiance = bsdf.evaluate(direction) * incidence.illuminance_lux * NoL.max(0.0);
+            let (direction, irradiance) = arriving(light, surface)?;
+            let radiance = bsdf.evaluate(direction) * irradiance;
             let distance_m = match light.kind {
                 LightKind::Directional => f64::INFINITY,
                 LightKind::Point { .. } | LightKind::Spot { .. } => {
@@ -123,19 +148,39 @@ impl<'a> Lighting<'a> {
         draws: &Draws,
         seen: impl Fn(DVec3, f64) -> f64,
     ) -> DVec3 {
-        let Some(environment) = self.environment else { return DVec3::ZERO };
+        let arriving = self.arriving_from_environment(surface, view, bsdf, draws, seen);
+        arriving.into_iter().flatten().map(|(light, irradiance)| bsdf.evaluate(light) * irradiance).sum()
+    }
+
+    /// Directions of light, one of each technique, and the irradiance that each stands for.
+    fn arriving_from_environment(
+        &self,
+        surface: &Surface,
+        view: DVec3,
+        bsdf: &Model<'_>,
+        draws: &Draws,
+        seen: impl Fn(DVec3, f64) -> f64,
+    ) -> [Option<(DVec3, DVec3)>; 3] {
+        let Some(environment) = self.environment else { return [None; 3] };
         let techniques = Techniques::new(bsdf.facets(), view, self.environment_sampler.as_ref());
-        let estimate = |light: DVec3| {
+        techniques.sample(draws).map(|light| {
+            let light = light?;
             let NoL = surface.normal_in_world.dot(light);
             if NoL <= 0.0 {
-                return DVec3::ZERO;
+                return None;
             }
             let radiance = environment.radiance(light);
             let seen = if radiance == DVec3::ZERO { 0.0 } else { seen(light, f64::INFINITY) };
-            bsdf.evaluate(light) * radiance * (seen * NoL / techniques.pdf_sum(light))
-        };
-        techniques.sample(draws).into_iter().flatten().map(estimate).sum()
+            Some((light, radiance * (seen * NoL / techniques.pdf_sum(light))))
+        })
     }
+}
+
+/// The direction toward a light and the irradiance that it brings, unshadowed. `None` where it has no direction.
+fn arriving(light: &LightInWorld, surface: &Surface) -> Option<(DVec3, DVec3)> {
+    let incidence = lights::incidence(light, surface.position_in_world)?;
+    let NoL = surface.normal_in_world.dot(incidence.direction_in_world);
+    Some((incidence.direction_in_world, incidence.illuminance_lux * NoL.max(0.0)))
 }
 
 #[cfg(test)]

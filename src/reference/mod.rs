@@ -12,6 +12,7 @@ pub mod disney;
 pub mod environment;
 mod estimate;
 pub mod geometry;
+pub mod inspect;
 pub mod integrator;
 pub mod laws;
 pub mod lights;

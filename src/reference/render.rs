@@ -60,7 +60,8 @@ pub(super) struct Samples {
 
 impl<'a> Tracer<'a> {
     pub(super) fn new(scene: &'a Scene, view: &'a View, bounces: u32) -> Self {
-        let choices = ModelChoices { energy_compensation: view.energy_compensation, geometry: view.geometry };
+        let term = view.term.filter(|_| bounces == 0);
+        let choices = ModelChoices { term, ..ModelChoices::of(view) };
         Self { view, world: World::new(scene, view), lighting: Lighting::new(scene, choices), bounces }
     }
 
@@ -83,21 +84,13 @@ impl<'a> Tracer<'a> {
     }
 
     fn sample(&self, pixel: DVec2, sampler: &PixelSampler, index: u32) -> Samples {
-        let ray = self.ray(pixel);
-        let mut radiance = DVec3::ZERO;
-        let mut transmittance = 1.0;
-        for (layer, depth) in self.world.layers(&ray).iter().zip(0..) {
-            radiance += self.layer(&layer.hit, &ray, (sampler, index, depth)) * (layer.alpha * transmittance);
-            transmittance *= 1.0 - layer.alpha;
-        }
-        let surface = 1.0 - transmittance;
-        let radiance = match self.view.background {
-            Background::Environment => {
-                (radiance + self.lighting.environment_radiance(ray.direction) * transmittance).extend(1.0)
-            }
-            Background::Transparent | Background::Color(_) => radiance.extend(surface),
-        };
-        Samples { radiance, surface }
+        let ray = camera_ray(self.view, pixel);
+        let layers = self.world.layers(&ray);
+        let sent = layers
+            .iter()
+            .zip(0..)
+            .map(|(layer, depth)| (layer.alpha, self.layer(&layer.hit, &ray, (sampler, index, depth))));
+        composite(self.view.background, sent, || self.lighting.environment_radiance(ray.direction))
     }
 
     /// Radiance that one of the surfaces along the ray sends back.
@@ -110,16 +103,35 @@ impl<'a> Tracer<'a> {
         let draws = [0, 1, 2].map(|dimension| sampler.pair(index, first + dimension));
         self.lighting.radiance(&self.world.surface(hit), -ray.direction, &draws)
     }
+}
 
-    /// The ray through a point of the picture, between the camera's near and far planes.
-    fn ray(&self, pixel: DVec2) -> Ray {
-        let camera = &self.view.camera;
-        let (origin, direction) = camera.ray(pixel, self.view.size_px);
-        let depth_per_t = direction.dot(camera.forward_in_world());
-        let far_m = match camera.projection {
-            Projection::Perspective { .. } => f64::INFINITY,
-            Projection::Orthographic { .. } => camera.far_m,
-        };
-        Ray { origin, direction, t_min: camera.near_m / depth_per_t, t_max: far_m / depth_per_t }
+/// The ray through a point of the picture, between the camera's near and far planes.
+pub(super) fn camera_ray(view: &View, pixel: DVec2) -> Ray {
+    let camera = &view.camera;
+    let (origin, direction) = camera.ray(pixel, view.size_px);
+    let depth_per_t = direction.dot(camera.forward_in_world());
+    let far_m = match camera.projection {
+        Projection::Perspective { .. } => f64::INFINITY,
+        Projection::Orthographic { .. } => camera.far_m,
+    };
+    Ray { origin, direction, t_min: camera.near_m / depth_per_t, t_max: far_m / depth_per_t }
+}
+
+/// Layers over one another and over the background: alpha and radiance, front to back.
+pub(super) fn composite(
+    background: Background,
+    layers: impl Iterator<Item = (f64, DVec3)>,
+    environment: impl FnOnce() -> DVec3,
+) -> Samples {
+    let (mut radiance, mut transmittance) = (DVec3::ZERO, 1.0);
+    for (alpha, sent) in layers {
+        radiance += sent * (alpha * transmittance);
+        transmittance *= 1.0 - alpha;
     }
+    let surface = 1.0 - transmittance;
+    let radiance = match background {
+        Background::Environment => (radiance + environment() * transmittance).extend(1.0),
+        Background::Transparent | Background::Color(_) => radiance.extend(surface),
+    };
+    Samples { radiance, surface }
 }

@@ -1,5 +1,9 @@
 //! What a ray sees where it hits: interpolated attributes, textures, the shading normal.
 
+mod details;
+
+pub use details::Details;
+
 use super::bsdf::{Anisotropy, SurfaceMaterial, dielectric_reflectance};
 use super::geometry::{Draw, Geometry, Hit, Ray};
 use super::texture::Textures;
@@ -200,20 +204,29 @@ impl Point<'_> {
 
     /// The shading normal on the side of the viewer.
     fn shading_normal(&self) -> DVec3 {
-        let normal = self.front_normal();
+        self.facing_viewer(self.front_normal())
+    }
+
+    /// A normal of the front side, turned round where the back is seen.
+    fn facing_viewer(&self, normal: DVec3) -> DVec3 {
         let is_area = self.draw.primitive.topology == Topology::Triangles;
         if is_area && !self.hit.front { -normal } else { normal }
     }
 
     /// The shading normal of the front side.
     fn front_normal(&self) -> DVec3 {
+        let (interpolated, smooth) = self.vertex_normal();
+        interpolated.and_then(|normal| self.mapped_normal(normal)).unwrap_or(smooth)
+    }
+
+    /// The interpolated normal, of any length and where there is one, and the unit vector that it comes to.
+    fn vertex_normal(&self) -> (Option<DVec3>, DVec3) {
         let geometric = self.triangle().normal().normalize_or(DVec3::Y) * self.draw.handedness;
-        let Some(normals) = &self.draw.primitive.normals else { return geometric };
+        let Some(normals) = &self.draw.primitive.normals else { return (None, geometric) };
         // Unit vectors at the vertices, and no longer so in between: what MikkTSpace's bakers assume.
         let normal =
             self.interpolate(|vertex| (self.draw.normal_from_object * normals[vertex].as_dvec3()).normalize_or_zero());
-        let smooth = normal.normalize_or(geometric);
-        self.mapped_normal(normal).unwrap_or(smooth)
+        (Some(normal), normal.normalize_or(geometric))
     }
 
     /// The interpolated tangent and the sign of the bitangent. A mirrored instance mirrors the bitangent, which a cross

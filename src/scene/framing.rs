@@ -106,6 +106,8 @@ pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
         energy_compensation: true,
         geometry: Geometry::default(),
         quality: Default::default(),
+        term: None,
+        channel: None,
     }
 }
 

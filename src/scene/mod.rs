@@ -4,6 +4,7 @@
 //! World space is right-handed, +Y up, in metres. Every index held here is valid: importers check, readers index.
 
 mod camera;
+mod channel;
 mod disney;
 pub mod disney_grid;
 mod environment;
@@ -17,6 +18,7 @@ mod spot_cone;
 mod view;
 
 pub use camera::{Camera, Projection};
+pub use channel::{Channel, Component, Components, Input, LightSource};
 pub use disney::Disney;
 pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile, Sun};
 pub use image::{Encoding, Image, Picture, Pixels, RadianceImage, Sampler, Texture, Wrap};
@@ -24,7 +26,7 @@ pub use light::{Light, LightInWorld, LightKind};
 pub use material::{AlphaMode, Material, MetalFresnel, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};
 pub use spot_cone::SpotCone;
-pub use view::{Background, Geometry, Quality, ToneMap, View};
+pub use view::{Background, Geometry, Quality, Term, ToneMap, View};
 
 use glam::{DMat4, DVec3};
 

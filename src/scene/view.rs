@@ -1,6 +1,6 @@
 //! How a scene is turned into a picture: camera, size, exposure, tone map, background.
 
-use super::Camera;
+use super::{Camera, Channel, Components};
 use glam::{UVec2, Vec3};
 
 /// The curve from exposed scene radiance to display light. All but `None` apply the exposure first.
@@ -112,6 +112,60 @@ impl Quality {
     }
 }
 
+/// A part of the radiance that a surface sends to the eye; all of them add up to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Term {
+    /// What surfaces emit, and what unlit ones show.
+    Emission,
+    /// Of point, spot and directional lights, from below the surface.
+    DirectDiffuse,
+    /// Of the same, from its facets, however often they scatter the light.
+    DirectSpecular,
+    /// Of the environment, its suns included.
+    EnvironmentDiffuse,
+    EnvironmentSpecular,
+}
+
+impl Term {
+    pub const ALL: [Self; 5] = [
+        Self::Emission,
+        Self::DirectDiffuse,
+        Self::DirectSpecular,
+        Self::EnvironmentDiffuse,
+        Self::EnvironmentSpecular,
+    ];
+
+    /// The name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Emission => "emission",
+            Self::DirectDiffuse => "direct diffuse",
+            Self::DirectSpecular => "direct specular",
+            Self::EnvironmentDiffuse => "environment diffuse",
+            Self::EnvironmentSpecular => "environment specular",
+        }
+    }
+
+    /// Whether it is light of point, spot and directional lights.
+    pub fn is_direct(self) -> bool {
+        matches!(self, Self::DirectDiffuse | Self::DirectSpecular)
+    }
+
+    /// Whether it is light of the environment.
+    pub fn is_of_environment(self) -> bool {
+        matches!(self, Self::EnvironmentDiffuse | Self::EnvironmentSpecular)
+    }
+
+    /// What of a BRDF reflects it; nothing emits it.
+    pub fn components(self) -> Option<Components> {
+        match self {
+            Self::Emission => None,
+            Self::DirectDiffuse | Self::EnvironmentDiffuse => Some(Components::DIFFUSE),
+            Self::DirectSpecular | Self::EnvironmentSpecular => Some(Components::SPECULAR),
+        }
+    }
+}
+
 /// A picture to be taken of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
@@ -126,4 +180,9 @@ pub struct View {
     /// For punctual lights; the tables that light from the environment is read through hold the default.
     pub geometry: Geometry,
     pub quality: Quality,
+    /// Show only this part of the radiance of surfaces; the background stays. Of unshadowed light: where the reference
+    /// renderer follows further bounces it shows everything.
+    pub term: Option<Term>,
+    /// What is drawn in place of the radiance; the reference renderer and the display transform do not heed it.
+    pub channel: Option<Channel>,
 }

@@ -1,7 +1,8 @@
 //! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
 
 use crate::scene::{
-    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, TextureSlot, Topology, UvTransform,
+    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureSlot, Topology,
+    UvTransform,
 };
 use std::fmt;
 
@@ -237,7 +238,11 @@ pub struct ForwardFeatures {
     pub energy_compensation: bool,
     pub geometry: Geometry,
     pub quality: Quality,
+    /// The only part of the radiance that is evaluated.
+    pub term: Option<Term>,
     pub topology: Topology,
+    /// A channel of the surface is drawn in place of its radiance; which one is data.
+    pub channel: bool,
 }
 
 impl ForwardFeatures {
@@ -278,9 +283,13 @@ impl fmt::Display for ForwardFeatures {
             (self.material.alpha == Alpha::Mask, "mask"),
             (self.material.alpha == Alpha::Blend, "blend"),
             (self.material.double_sided, "double_sided"),
+            (self.channel, "channel"),
         ];
         parts.extend(flags.into_iter().filter(|(on, _)| *on).map(|(_, name)| name));
         f.write_str(&parts.join("+"))?;
+        if let Some(term) = self.term {
+            write!(f, "+only_{}", term.name().replace(' ', "_"))?;
+        }
         for (slot, texture) in self.material.textures() {
             write!(f, "+{}", slot.name())?;
             if texture.uv_set > 0 || texture.sampler > 0 || texture.transformed {

@@ -4,6 +4,7 @@
 //! is chosen from [`ForwardFeatures`] and friends, so that a scene without a feature has neither its code nor its
 //! bindings. Slots are filled with a file or with text generated here from Rust declarations.
 
+mod channels;
 mod compose;
 mod features;
 mod interface;
@@ -12,6 +13,7 @@ mod modules;
 mod sources;
 pub mod types;
 
+pub use channels::{channel_is_read, channel_uniform};
 pub use compose::{Composed, ShaderError, Slot, Slots, compose};
 pub use features::{
     Alpha, ForwardFeatures, FresnelFeature, MaterialFeatures, SceneFeatures, Shading, TextureUse, VertexFeatures,

@@ -3,8 +3,8 @@
 use super::compose::{Composed, ShaderError, Slot, Slots, compose};
 use super::features::{Alpha, ForwardFeatures, FresnelFeature, Shading};
 use super::sources::ShaderSources;
-use super::{interface, types};
-use crate::scene::{Geometry, Quality, TextureSlot, ToneMap};
+use super::{channels, interface, types};
+use crate::scene::{Components, Geometry, Quality, Term, TextureSlot, ToneMap};
 
 /// The forward pass of one kind of draw.
 pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
@@ -14,7 +14,10 @@ pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Re
 /// What fills the slots of the forward pass.
 pub fn forward_slots(features: &ForwardFeatures) -> Slots {
     let choose = |on: bool, with: &'static str, without: &'static str| Slot::File(if on { with } else { without });
-    let ForwardFeatures { scene, material, vertex, energy_compensation, geometry, .. } = features;
+    let ForwardFeatures { scene, material, vertex, energy_compensation, geometry, term, channel, .. } = features;
+    let term = term.filter(|_| !channel);
+    let punctual = scene.punctual && term.is_none_or(Term::is_direct);
+    let environment = scene.environment && term.is_none_or(Term::is_of_environment);
     let normal_mapped = material.texture(TextureSlot::Normal).is_some();
     Slots::from([
         ("types", Slot::Text(types::wgsl())),
@@ -44,14 +47,8 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
                 "surface/facing_single.wgsl",
             ),
         ),
-        (
-            "shading",
-            Slot::File(match material.shading {
-                Shading::Lit | Shading::Disney => "lighting/lit.wgsl",
-                Shading::EmissiveOnly => "lighting/emissive_only.wgsl",
-                Shading::Unlit => "lighting/unlit.wgsl",
-            }),
-        ),
+        ("shading", Slot::File(shading(material.shading, term))),
+        ("components", Slot::Text(channels::components(term.and_then(Term::components).unwrap_or(Components::ALL)))),
         ("tangents", choose(material.anisotropic, "surface/tangents_anisotropic.wgsl", "surface/tangents_none.wgsl")),
         ("shape", choose(material.anisotropic, "lighting/shape_anisotropic.wgsl", "lighting/shape_isotropic.wgsl")),
         ("visibility", Slot::File(visibility(*geometry))),
@@ -65,16 +62,30 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
             }),
         ),
         ("lobes", choose(material.shading == Shading::Disney, "lighting/disney.wgsl", "lighting/lobes.wgsl")),
-        ("punctual", choose(scene.punctual, "lighting/punctual.wgsl", "lighting/punctual_none.wgsl")),
+        ("punctual", choose(punctual, "lighting/punctual.wgsl", "lighting/punctual_none.wgsl")),
         (
             "environment",
-            match (scene.environment, material.shading) {
+            match (environment, material.shading) {
                 (true, Shading::Disney) => Slot::File("lighting/environment_disney.wgsl"),
                 (true, _) => Slot::File("lighting/environment.wgsl"),
                 (false, _) => Slot::File("lighting/environment_none.wgsl"),
             },
         ),
-        ("suns", choose(scene.suns, "lighting/suns.wgsl", "lighting/suns_none.wgsl")),
+        (
+            "suns",
+            Slot::File(match (scene.suns, channel) {
+                (false, _) => "lighting/suns_none.wgsl",
+                (true, false) => "lighting/suns.wgsl",
+                (true, true) => "channel/suns.wgsl",
+            }),
+        ),
+        ("output", choose(*channel, "channel/channel.wgsl", "channel/radiance.wgsl")),
+        ("channels", Slot::Text(channels::channels(features))),
+        ("radiance_channel", choose(material.shading.is_lit(), "channel/lit.wgsl", "channel/unlit.wgsl")),
+        (
+            "chosen_lobes",
+            choose(material.shading == Shading::Disney, "channel/lobes_disney.wgsl", "channel/lobes_standard.wgsl"),
+        ),
         (
             "reflection",
             Slot::File(match features.reflection() {
@@ -97,6 +108,17 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
             }),
         ),
     ])
+}
+
+/// What a surface sends to the eye: everything, or only the term.
+fn shading(shading: Shading, term: Option<Term>) -> &'static str {
+    match (shading, term) {
+        (Shading::Unlit, None | Some(Term::Emission)) => "lighting/unlit.wgsl",
+        (Shading::Lit | Shading::Disney, None) => "lighting/lit.wgsl",
+        (_, None | Some(Term::Emission)) => "lighting/emissive_only.wgsl",
+        (Shading::Lit | Shading::Disney, Some(_)) => "lighting/lit_term.wgsl",
+        (_, Some(_)) => "lighting/black.wgsl",
+    }
 }
 
 fn visibility(geometry: Geometry) -> &'static str {

@@ -13,9 +13,10 @@ gpu_struct! {
         /// Perspective: camera position and 1. Orthographic: unit vector toward the viewer and 0.
         viewer: vec4f,
         light_count: u32,
-        pad_0: u32,
-        pad_1: u32,
-        pad_2: u32,
+        /// Of a channel in place of the radiance, see `scene::Channel`: what it is, which light, and the components of the BRDF as bits.
+        channel: u32,
+        channel_index: u32,
+        channel_components: u32,
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod tree;
 
-use crate::shaders::{display_features, forward_features};
+use crate::shaders::{display_features, forward_features, term_features};
 use specula::proof;
 use specula::shader::{SOURCES, ShaderSources, background_module, display_module, forward_module};
 use std::collections::BTreeSet;
@@ -169,7 +169,8 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     assert!(of_proofs.iter().all(is_apart) && !embedded.iter().any(is_apart), "proofs have folders of their own");
 
     let mut modules = vec![background_module(&sources).unwrap()];
-    modules.extend(forward_features().iter().map(|features| forward_module(&sources, features).unwrap()));
+    let forward = [forward_features(), term_features()].concat();
+    modules.extend(forward.iter().map(|features| forward_module(&sources, features).unwrap()));
     modules.extend(display_features().into_iter().map(|features| display_module(&sources, features).unwrap()));
     let used: BTreeSet<&str> = modules.iter().flat_map(|module| module.files()).collect();
     let unused: Vec<&String> = embedded.iter().filter(|path| !used.contains(path.as_str())).collect();

@@ -6,17 +6,17 @@ use std::process::{Output, Stdio};
 
 const SHOWCASE: &str = "assets/showcase.glb";
 
-fn specula(arguments: &[&str]) -> Output {
+pub(crate) fn specula(arguments: &[&str]) -> Output {
     program().args(arguments).output().unwrap()
 }
 
 /// stderr without what the driver says on its own.
-fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     let text = String::from_utf8_lossy(&output.stderr);
     text.lines().filter(|line| !line.contains("XDG_RUNTIME_DIR")).map(|line| format!("{line}\n")).collect()
 }
 
-fn assert_fails(arguments: &[&str], code: i32, expected: &str) {
+pub(crate) fn assert_fails(arguments: &[&str], code: i32, expected: &str) {
     let output = specula(arguments);
     let error = stderr(&output);
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");

@@ -283,6 +283,8 @@ fn view(geometry: Geometry) -> View {
         geometry,
         // The truth here is the split sum; tests/suite/tiers.rs has the others.
         quality: Quality::SplitSum,
+        term: None,
+        channel: None,
     }
 }
 

@@ -2,17 +2,20 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 mod architecture;
+mod bench;
 mod cache;
 mod cli;
 mod compare;
 mod disney;
 mod frames;
 mod goldens;
+mod inspect;
 mod lights;
 mod lit_plane;
 mod mutants;
 mod shaders;
 mod stability;
 mod support;
+mod terms;
 mod tiers;
 mod twins;

@@ -265,10 +265,10 @@ const DISNEY_LIGHTING: [&str; 4] = [
 
 /// Faults in how suns and fitted taps are shaded.
 const IN_TIERS: &[Mutant] = &[
-    fault("lighting/suns.wgsl", "sun_illuminance[i]", "sun_illuminance[0]"),
-    fault("lighting/suns.wgsl", "let sun = environment.suns[i]", "let sun = environment.suns[0]"),
-    fault("lighting/suns.wgsl", "lobes, sun.w,", "lobes, 0.0,"),
-    fault("lighting/suns.wgsl", "saturate(lobes.perceptual_roughness * environment.level_scale)", "1.0"),
+    fault("lighting/sun.wgsl", "sun_illuminance[i]", "sun_illuminance[0]"),
+    fault("lighting/sun.wgsl", "let sun = environment.suns[i]", "let sun = environment.suns[0]"),
+    fault("lighting/sun.wgsl", "lobes, sun.w,", "lobes, 0.0,"),
+    fault("lighting/sun.wgsl", "saturate(lobes.perceptual_roughness * environment.level_scale)", "1.0"),
     fault("lighting/taps.wgsl", "offset * 16.0 - 8.0", "8.0 - offset * 16.0"),
     fault("lighting/taps.wgsl", "sqrt(8.0 * width)", "8.0 * width"),
     fault(
@@ -287,7 +287,7 @@ const IN_TIERS: &[Mutant] = &[
 
 /// Files whose faults [`IN_TIERS`] must show.
 const TIER_LIGHTING: [&str; 5] = [
-    "lighting/suns.wgsl",
+    "lighting/sun.wgsl",
     "lighting/taps.wgsl",
     "lighting/reflection_draft.wgsl",
     "lighting/reflection_standard.wgsl",

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use specula::gpu::bindings::{FRAME_TAPS, background_entries, display_entries, frame_entries, material_entries};
 use specula::scene::{
-    AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Texture, TextureRef,
+    AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, Texture, TextureRef,
     TextureSlot, ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
@@ -23,6 +23,12 @@ pub(crate) fn forward_features() -> Vec<ForwardFeatures> {
         materials.flat_map(move |disney| of_material(&Material { disney, ..material(slots) }, &primitive(slots), slots))
     };
     (0..1 << TextureSlot::ALL.len()).flat_map(of_slots).collect()
+}
+
+/// A few materials, each with one term of its light alone.
+pub(crate) fn term_features() -> Vec<ForwardFeatures> {
+    let of_term = |features: &ForwardFeatures| Term::ALL.map(|term| ForwardFeatures { term: Some(term), ..*features });
+    forward_features().iter().step_by(7).flat_map(of_term).collect()
 }
 
 /// A material under every kind of light.
@@ -49,7 +55,9 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
             energy_compensation: !slots.is_multiple_of(5),
             geometry: Geometry::ALL[slots as usize % 5],
             quality: Quality::ALL[slots as usize % 4],
+            term: None,
             topology: Topology::Triangles,
+            channel: slots % 9 < 4,
         }
     })
 }
@@ -162,6 +170,16 @@ fn forward_modules_use_all_that_is_bound_and_nothing_else() {
     }
     println!("{compared} bindings compared");
     assert!(compared > 512 * 3, "{compared}");
+}
+
+#[test]
+fn modules_of_one_term_are_valid_and_use_nothing_that_is_not_bound() {
+    for features in term_features() {
+        let used = used(&forward_module(&ShaderSources::default(), &features).unwrap());
+        let offered = offered(&[frame_entries(features.scene), material_entries(&features.material)]);
+        let missing: Vec<_> = used.keys().filter(|binding| !offered.contains_key(binding)).collect();
+        assert!(missing.is_empty(), "{features}: {missing:?}");
+    }
 }
 
 #[test]

@@ -64,6 +64,8 @@ pub(crate) fn front_view(side_px: u32) -> View {
         energy_compensation: true,
         geometry: Default::default(),
         quality: Default::default(),
+        term: None,
+        channel: None,
     }
 }
 

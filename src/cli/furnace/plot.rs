@@ -2,6 +2,7 @@
 
 use super::Checked;
 use super::table::theta_deg;
+use crate::cli::svg::{document, escape, ramp};
 use std::fmt::Write;
 
 const PLOT_WIDTH: f64 = 560.0;
@@ -11,10 +12,6 @@ const TOP: f64 = 40.0;
 const BOTTOM: f64 = 52.0;
 const LEGEND_WIDTH: f64 = 250.0;
 const LEGEND_LINE: f64 = 17.0;
-
-/// Dark violet over teal to yellow-green: even steps of lightness, told apart without red or green.
-const RAMP: [[f64; 3]; 5] =
-    [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [84.0, 190.0, 80.0], [214.0, 190.0, 20.0]];
 
 /// The picture; albedos are those of the strongest channel.
 pub(super) fn svg(checked: &[Checked]) -> String {
@@ -26,10 +23,7 @@ pub(super) fn svg(checked: &[Checked]) -> String {
         body += &draw_panel(panel, y, top);
         y += height;
     }
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{y}\" viewBox=\"0 0 {width} {y}\" \
-         font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{body}</svg>\n"
-    )
+    document(width, y, &body)
 }
 
 /// The upper end of the axis of albedos: room above 1, and for what is larger.
@@ -113,33 +107,4 @@ fn axes(svg: &mut String, x: &impl Fn(f64) -> f64, y: &impl Fn(f64) -> f64, top:
         svg,
         "<text x=\"16\" y=\"{middle:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 16 {middle:.1})\">directional albedo E</text>"
     );
-}
-
-/// Colour of the ramp at a place in [0, 1].
-fn ramp(t: f64) -> String {
-    let position = t.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
-    let index = (position as usize).min(RAMP.len() - 2);
-    let f = position - index as f64;
-    let channel = |i: usize| (RAMP[index][i] + (RAMP[index + 1][i] - RAMP[index][i]) * f).round() as u8;
-    format!("#{:02x}{:02x}{:02x}", channel(0), channel(1), channel(2))
-}
-
-/// Names come from files of strangers.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_cannot_break_out_of_their_text() {
-        assert_eq!(escape("<a> & b"), "&lt;a&gt; &amp; b");
-    }
-
-    #[test]
-    fn the_ramp_ends_where_it_should() {
-        assert_eq!((ramp(0.0).as_str(), ramp(1.0).as_str()), ("#440154", "#d6be14"));
-    }
 }

@@ -6,9 +6,9 @@ use super::{
     CLEARCOAT_F0, CLEARCOAT_MASKING, CLEARCOAT_WEIGHT, D_GTR1, D_GTR2_anisotropic, Fd_Burley, Fd_Subsurface,
     G1_SmithGGX, Schlick_weight, alpha_of_clearcoat, alpha_of_masking, alphas, specular_f0, tint,
 };
-use crate::reference::bsdf::SMALLEST_NOV;
+use crate::reference::bsdf::{BLACK, PerComponent, SMALLEST_NOV};
 use crate::reference::techniques::Facets;
-use crate::scene::Disney;
+use crate::scene::{Component, Disney};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
@@ -95,9 +95,14 @@ impl DisneyBsdf {
 
     /// f(l, v), 1/sr, for the unit direction `light`; black below the horizon of the shading normal.
     pub fn evaluate(&self, light: DVec3) -> DVec3 {
+        self.components(light).into_iter().sum()
+    }
+
+    /// The components whose sum is [`Self::evaluate`].
+    pub fn components(&self, light: DVec3) -> PerComponent {
         let NoL = self.frame.normal.dot(light).min(1.0);
         if NoL <= 0.0 {
-            return DVec3::ZERO;
+            return BLACK;
         }
         let h = (light + self.view).normalize_or(self.frame.normal);
         let [ToH, BoH, NoH] = [self.frame.tangent, self.frame.bitangent, self.frame.normal].map(|axis| axis.dot(h));
@@ -106,15 +111,18 @@ impl DisneyBsdf {
 
         let D = D_GTR2_anisotropic(self.alphas.0, self.alphas.1, ToH, BoH, NoH);
         let masking = alpha_of_masking(self.perceptual_roughness);
-        let specular = self.f0.lerp(DVec3::ONE, fresnel) * (D * self.masked(masking, NoL));
+        let mut components = BLACK;
+        components[Component::Specular as usize] = self.f0.lerp(DVec3::ONE, fresnel) * (D * self.masked(masking, NoL));
 
         let clearcoat = CLEARCOAT_F0 + (1.0 - CLEARCOAT_F0) * fresnel;
         let clearcoat = clearcoat * D_GTR1(self.clearcoat_alpha, NoH) * self.masked(CLEARCOAT_MASKING, NoL);
+        components[Component::Clearcoat as usize] = DVec3::splat(self.clearcoat * clearcoat);
 
         let Fd = Fd_Burley(self.perceptual_roughness, self.NoV, NoL, LoH);
         let Fss = Fd_Subsurface(self.perceptual_roughness, self.NoV, NoL, LoH);
-        let diffuse = self.diffuse * (Fd + (Fss - Fd) * self.subsurface);
-        diffuse + self.sheen * fresnel + specular + self.clearcoat * clearcoat
+        components[Component::Diffuse as usize] = self.diffuse * (Fd + (Fss - Fd) * self.subsurface);
+        components[Component::Sheen as usize] = self.sheen * fresnel;
+        components
     }
 
     /// Separable masking and shadowing over 4 NoV NoL.

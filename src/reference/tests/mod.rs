@@ -23,6 +23,8 @@ pub(in crate::reference) fn view() -> View {
         energy_compensation: true,
         geometry: Geometry::default(),
         quality: Default::default(),
+        term: None,
+        channel: None,
     }
 }
 

@@ -1,0 +1,24 @@
+#import <lobes>
+#import <chosen_lobes>
+#import <punctual>
+#import <environment>
+#import <suns>
+
+// Radiance of one source by way of the lobes that are asked for.
+fn radiance_channel(surface: Surface, position: vec3f) -> vec3f {
+    let lobes = chosen_lobes(make_lobes(surface), frame.channel_components);
+    switch frame.channel {
+        case CHANNEL_PUNCTUAL: {
+            return punctual_radiance(lobes, position);
+        }
+        case CHANNEL_LIGHT: {
+            return radiance_of_light(lobes, position, frame.channel_index);
+        }
+        case CHANNEL_SUN: {
+            return radiance_of_sun(lobes, frame.channel_index) * surface.occlusion;
+        }
+        default: {
+            return environment_radiance(lobes) * surface.occlusion;
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! How long a frame takes: on the wall, of the processors, and by the device's own clock.
+
+use crate::capture::CaptureError;
+use crate::gpu::{Gpu, read_buffer};
+use serde::Serialize;
+use std::time::Instant;
+
+/// The times of one frame, or their medians, ms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(in crate::cli) struct FrameTimes {
+    /// From the start of recording until the device is done.
+    pub(in crate::cli) wall_ms: f64,
+    /// Of all threads of the process, a software driver's included. None where the system does not tell.
+    pub(in crate::cli) cpu_ms: Option<f64>,
+    /// Between the first and the last command of the frame. None where the device has no timestamps.
+    pub(in crate::cli) gpu_ms: Option<f64>,
+}
+
+/// Which of the times settings are compared by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(in crate::cli) enum Basis {
+    Wall,
+    /// A software driver draws on the processors, and there other programs do not count.
+    Cpu,
+    Gpu,
+}
+
+impl Basis {
+    /// The time that says most on a device.
+    pub(in crate::cli) fn suiting(gpu: &Gpu) -> Self {
+        let is_software = gpu.info.device_type == wgpu::DeviceType::Cpu;
+        match (is_software, process_ms().is_some(), Timestamps::are_there(gpu)) {
+            (true, true, _) => Self::Cpu,
+            (false, _, true) => Self::Gpu,
+            _ => Self::Wall,
+        }
+    }
+
+    /// In reports.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Wall => "wall time",
+            Self::Cpu => "processor time",
+            Self::Gpu => "GPU time",
+        }
+    }
+
+    /// The time in question, where it is known.
+    pub(in crate::cli) fn of(self, times: &FrameTimes) -> Option<f64> {
+        match self {
+            Self::Wall => Some(times.wall_ms),
+            Self::Cpu => times.cpu_ms,
+            Self::Gpu => times.gpu_ms,
+        }
+    }
+}
+
+/// Processor time of this process, ms.
+fn process_ms() -> Option<f64> {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Some(time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6)
+    }
+    #[cfg(not(unix))]
+    None
+}
+
+/// Two marks on the device's clock.
+#[derive(Debug)]
+pub(super) struct Timestamps {
+    queries: wgpu::QuerySet,
+    ticks: wgpu::Buffer,
+    ms_per_tick: f64,
+}
+
+impl Timestamps {
+    fn are_there(gpu: &Gpu) -> bool {
+        let needed = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
+        gpu.device.features().contains(needed)
+    }
+
+    /// `None` where the device has none.
+    pub(super) fn new(gpu: &Gpu) -> Option<Self> {
+        let create = || Self {
+            queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("frame"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            }),
+            ticks: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("timestamps"),
+                size: 16,
+                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }),
+            ms_per_tick: f64::from(gpu.queue.get_timestamp_period()) * 1e-6,
+        };
+        Self::are_there(gpu).then(create)
+    }
+}
+
+/// Times one frame: `record` fills the encoder.
+pub(super) fn time_frame(
+    gpu: &Gpu,
+    timestamps: Option<&Timestamps>,
+    record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), CaptureError>,
+) -> Result<FrameTimes, CaptureError> {
+    let (start, start_ms) = (Instant::now(), process_ms());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bench") });
+    if let Some(timestamps) = timestamps {
+        encoder.write_timestamp(&timestamps.queries, 0);
+    }
+    record(&mut encoder)?;
+    let ticks = timestamps.map(|timestamps| {
+        encoder.write_timestamp(&timestamps.queries, 1);
+        encoder.resolve_query_set(&timestamps.queries, 0..2, &timestamps.ticks, 0);
+        read_buffer(&gpu.device, &mut encoder, &timestamps.ticks)
+    });
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait()?;
+    let wall_ms = start.elapsed().as_secs_f64() * 1e3;
+    let cpu_ms = process_ms().zip(start_ms).map(|(end, start)| end - start);
+    let ticks = ticks.map(|ticks| ticks.wait(gpu)).transpose()?;
+    let gpu_ms = ticks.zip(timestamps).map(|(bytes, timestamps)| {
+        let tick = |at: usize| bytemuck::pod_read_unaligned::<u64>(&bytes[at..at + 8]);
+        tick(8).wrapping_sub(tick(0)) as f64 * timestamps.ms_per_tick
+    });
+    Ok(FrameTimes { wall_ms, cpu_ms, gpu_ms })
+}
+
+/// The middle value, or the mean of the two in the middle; `None` of nothing.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        count if count % 2 == 1 => Some(values[middle]),
+        _ => Some(0.5 * (values[middle - 1] + values[middle])),
+    }
+}
+
+/// The median of one of the times; `None` of no frames, or where it is not known.
+pub(in crate::cli) fn median_ms(frames: &[FrameTimes], basis: Basis) -> Option<f64> {
+    median(frames.iter().filter_map(|frame| basis.of(frame)))
+}
+
+/// The median of each time; of no frames, nothing.
+pub(super) fn median_times(frames: &[FrameTimes]) -> Option<FrameTimes> {
+    Some(FrameTimes {
+        wall_ms: median_ms(frames, Basis::Wall)?,
+        cpu_ms: median_ms(frames, Basis::Cpu),
+        gpu_ms: median_ms(frames, Basis::Gpu),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_are_in_the_middle() {
+        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), Some(2.0));
+        assert_eq!(median([4.0, 1.0, 2.0, 100.0].into_iter()), Some(3.0));
+        assert_eq!(median([].into_iter()), None);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn processor_time_passes_with_work() {
+        let start = process_ms().unwrap();
+        let mut x = 1.0_f64;
+        while process_ms().unwrap() - start < 1.0 {
+            x = std::hint::black_box(x).sqrt() + 1.0;
+        }
+        assert!(x > 1.0);
+    }
+}
