@@ -23,8 +23,8 @@ use crate::metrics::truth::RelativeError;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::scene::{Quality, Scene, View};
-use clock::median_times;
 pub(super) use clock::{Basis, median_ms};
+use clock::{FrameTimes, median_times};
 use report::{DisplayRow, Row, TermRow, TruthReport};
 pub(super) use settings::Setting;
 pub(super) use stage::{Shot, Stage};
@@ -58,7 +58,7 @@ pub(super) struct BenchArgs {
     quiet: bool,
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Measurement")]
 struct EffortArgs {
     /// Frames of each setting, of which the median counts.
@@ -115,51 +115,73 @@ fn measure(
     view: &View,
     progress: &dyn Progress,
 ) -> Result<report::Report, CliError> {
-    let basis = args.effort.clock.unwrap_or_else(|| Basis::suiting(gpu));
+    let EffortArgs { frames, clock, truth_samples, truth_error } = args.effort;
+    let basis = clock.unwrap_or_else(|| Basis::suiting(gpu));
     let capture = args.driver.capture_options();
     let base = Setting::new(view.quality, capture.samples, capture.precision);
     let mut stage = Stage::new(gpu, scene);
-    let (mut shots, mut warnings) = (Vec::new(), Vec::new());
-    for setting in settings::settings(base, has_environment(scene)) {
-        match stage.shot(setting, view, progress) {
-            Ok(shot) => shots.push(shot),
-            // The base has to work; other settings may be more than the adapter can.
-            Err(error) if setting == base => return Err(error),
-            Err(error) => warnings.push(format!("{setting} is left out: {error}")),
-        }
-    }
-    let times = stage.measure(&shots, args.effort.frames, progress)?;
+    let (base_shot, others, warnings) = shots(&mut stage, base, (scene, view), progress)?;
+    let shots: Vec<Shot> = std::iter::once(base_shot).chain(others).collect();
+    let times = stage.measure(&shots, frames, progress)?;
     if times.iter().flatten().any(|frame| basis.of(frame).is_none()) {
         return Err(CliError::Usage(format!("{} is not known on this machine; take another --clock", basis.name())));
     }
-    let options =
-        TruthOptions { samples: args.effort.truth_samples, relative_error: args.effort.truth_error, progress };
+    let options = TruthOptions { samples: truth_samples, relative_error: truth_error, progress };
     let picture = Truth::of_picture(scene, view, &options);
     let bare = with_bare_textures(scene);
     let mut light = Light { truth: Truth::of_shading(&bare, view, &options), stage: Stage::new(gpu, &bare), view };
-    let mut rows = Vec::new();
-    for (shot, frames) in shots.iter().zip(&times) {
-        let actual = stage.radiance(shot, None)?;
-        let (Some(times), Some(ratio)) = (median_times(frames), ratio_of(frames, &times[0], basis)) else { continue };
-        let errors = (picture.error(&actual), light.error(shot.setting, progress)?);
-        let flip_mean = picture.flip_mean(&actual).map_err(|error| CliError::Usage(error.to_string()))?;
-        rows.push(Row::new(&shot.setting, times, ratio, (&errors.0, &errors.1), flip_mean));
-    }
-    let Some(shot) = shots.first() else { return Err(CliError::Usage("there is no setting to measure".into())) };
     Ok(report::Report::new(report::Parts {
         model: args.subject.model.display().to_string(),
         environment: args.subject.environment_name().to_owned(),
         adapter: AdapterStats::of(gpu),
         size_px: view.size_px.to_array(),
-        frames: args.effort.frames,
+        frames,
         basis,
-        picture_truth: TruthReport::new(picture.samples, &picture.error(&stage.radiance(shot, None)?)),
+        picture_truth: TruthReport::new(picture.samples, &picture.error(&stage.radiance(&shots[0], None)?)),
         shading_truth: TruthReport::new(light.truth.samples, &light.error(base, progress)?),
         terms: light.terms(base, has_environment(scene), progress)?,
-        display: display(&mut stage, shot, &picture)?,
-        rows,
+        display: display(&mut stage, &shots[0], &picture)?,
+        rows: rows((&mut stage, &picture), &mut light, shots.iter().zip(&times), (basis, progress))?,
         warnings,
     }))
+}
+
+/// What is drawn with the base, and with every other setting that the adapter can draw; warnings name those that it cannot.
+fn shots(
+    stage: &mut Stage<'_>,
+    base: Setting,
+    (scene, view): (&Scene, &View),
+    progress: &dyn Progress,
+) -> Result<(Shot, Vec<Shot>, Vec<String>), CliError> {
+    let first = stage.shot(base, view, progress)?;
+    let (mut others, mut warnings) = (Vec::new(), Vec::new());
+    for setting in settings::settings(base, has_environment(scene)).into_iter().skip(1) {
+        match stage.shot(setting, view, progress) {
+            Ok(shot) => others.push(shot),
+            Err(error) => warnings.push(format!("{setting} is left out: {error}")),
+        }
+    }
+    Ok((first, others, warnings))
+}
+
+/// Both errors and the times of every shot; the first is the base.
+fn rows<'t>(
+    (stage, picture): (&mut Stage<'_>, &Truth),
+    light: &mut Light<'_>,
+    timed: impl Iterator<Item = (&'t Shot, &'t Vec<FrameTimes>)>,
+    (basis, progress): (Basis, &dyn Progress),
+) -> Result<Vec<Row>, CliError> {
+    let mut rows = Vec::new();
+    let mut base: Option<&[FrameTimes]> = None;
+    for (shot, frames) in timed {
+        let base = *base.get_or_insert(frames);
+        let (Some(times), Some(ratio)) = (median_times(frames), ratio_of(frames, base, basis)) else { continue };
+        let actual = stage.radiance(shot, None)?;
+        let errors = (picture.error(&actual), light.error(shot.setting, progress)?);
+        let flip_mean = picture.flip_mean(&actual).map_err(|error| CliError::Usage(error.to_string()))?;
+        rows.push(Row::new(&shot.setting, times, ratio, (&errors.0, &errors.1), flip_mean));
+    }
+    Ok(rows)
 }
 
 pub(super) fn has_environment(scene: &Scene) -> bool {
@@ -167,7 +189,7 @@ pub(super) fn has_environment(scene: &Scene) -> bool {
 }
 
 /// The median over rounds of a setting's time over the base's in the same round.
-fn ratio_of(frames: &[clock::FrameTimes], base: &[clock::FrameTimes], basis: Basis) -> Option<f64> {
+fn ratio_of(frames: &[FrameTimes], base: &[FrameTimes], basis: Basis) -> Option<f64> {
     let pairs = frames.iter().zip(base);
     clock::median(pairs.filter_map(|(frame, base)| Some(basis.of(frame)? / basis.of(base)?)))
 }

@@ -38,7 +38,6 @@ fn settings_are_measured_reported_and_drawn() {
         let setting = settings.iter().find(|setting| setting["quality"] == quality).unwrap();
         setting["shading_error"]["upper"].as_f64().unwrap()
     };
-    // Measured 9 % and 4 %, at this size.
     assert!(light_of("split-sum") > light_of("standard"), "{report}");
     let terms = report["terms"].as_array().unwrap();
     assert_eq!(terms.iter().map(|row| row["quality"].as_str().unwrap()).collect::<Vec<_>>(), TIERS);

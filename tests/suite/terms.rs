@@ -57,8 +57,8 @@ fn terms_add_up_to_the_radiance_on_both_sides() {
         let (drawn, traced) =
             (largest_gap(|view| radiance(&gpu, &scene, view)), largest_gap(|view| trace(&scene, view, 1)));
         println!("{drawn:e} drawn, {traced:e} traced");
-        // Radiance here goes up to about 10: rounding of f32.
-        assert!(drawn < 2e-5 && traced < 2e-5, "{drawn:e} and {traced:e}");
+        // Measured 2.4e-7 and 1.2e-7: rounding of f32. Margin 4.
+        assert!(drawn < 1e-6 && traced < 5e-7, "{drawn:e} and {traced:e}");
     }
 }
 
@@ -71,7 +71,8 @@ fn terms_of_the_lamp_are_those_of_the_reference() {
             let view = View { term: Some(term), ..front_view(SIDE_PX) };
             let error = relative_rms(&radiance(&gpu, &scene, &view), &trace(&scene, &view, 1));
             println!("{term:?}: {error:e}");
-            assert!(error < 1e-4, "{term:?}: {error:e}");
+            // Measured 1.1e-5 at most, on llvmpipe; margin 3.
+            assert!(error < 3e-5, "{term:?}: {error:e}");
         }
     }
 }
@@ -84,5 +85,6 @@ fn diffuse_light_of_the_sky_is_that_of_the_reference() {
     let view = View { term: Some(Term::EnvironmentDiffuse), ..front_view(SIDE_PX) };
     let error = relative_rms(&radiance(&gpu, &scene, &view), &trace(&scene, &view, 256));
     println!("{error:e}");
-    assert!(error < 2e-2, "{error:e}");
+    // Measured 4.0e-3, with the noise of 256 samples; margin 2.
+    assert!(error < 8e-3, "{error:e}");
 }

@@ -47,23 +47,29 @@ impl Axis {
         self.start + (self.end - self.start) * (value.ln() - self.low) / (self.high - self.low)
     }
 
-    /// Round numbers on the axis: so many steps a decade that there are a few of them.
+    /// A few round numbers on the axis: of a decade where it spans some, else at even steps.
     fn ticks(&self) -> Vec<f64> {
-        let fine: Vec<f64> = (10..100).map(|tenths| f64::from(tenths) / 10.0).collect();
-        let steps: [&[f64]; 5] = [
-            &[1.0],
-            &[1.0, 2.0, 5.0],
-            &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
-            &[1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 9.0],
-            &fine,
-        ];
-        let (first, last) = ((self.low / 10_f64.ln()).floor() as i32, (self.high / 10_f64.ln()).ceil() as i32);
+        let (low, high) = (self.low.exp(), self.high.exp());
+        if high < 4.0 * low {
+            return even_ticks(low, high);
+        }
+        let steps: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0]];
+        let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let of = |steps: &[f64]| -> Vec<f64> {
-            let all = (first..=last).flat_map(|decade| steps.iter().map(move |step| step * 10_f64.powi(decade)));
-            all.filter(|tick| (self.low..=self.high).contains(&tick.ln())).collect()
+            let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| step * 10_f64.powi(decade)));
+            all.filter(|tick| (low..=high).contains(tick)).collect()
         };
-        steps.iter().map(|steps| of(steps)).find(|ticks| ticks.len() >= 4).unwrap_or_else(|| of(&fine))
+        steps.iter().map(|steps| of(steps)).find(|ticks| ticks.len() >= 4).unwrap_or_else(|| of(steps[2]))
     }
+}
+
+/// Multiples of 1, 2 or 5 times a power of ten, 3 to 9 of them.
+fn even_ticks(low: f64, high: f64) -> Vec<f64> {
+    let rough = (high - low) / 8.0;
+    let power = 10_f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|s| s * power).into_iter().find(|step| *step >= rough).unwrap_or(rough);
+    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+    (first..=last).map(|multiple| multiple as f64 * step).collect()
 }
 
 /// What one panel shows.
@@ -119,8 +125,9 @@ fn draw(mut panel: Panel<'_>, time: &str) -> String {
     let area = [panel.left + 2.0, TOP, panel.right + RIGHT - 4.0, HEIGHT - BOTTOM - 2.0];
     let mut body = String::new();
     axes(&mut body, (&x, &y), (time, panel.what));
-    front_line(&mut body, &panel.rows, &points);
-    let labels = labels(&label_widths(&panel.rows), &points, &by_importance(&panel.rows), &area);
+    front_line(&mut body, &front(&panel.rows, &points));
+    let labels =
+        labels(&label_widths(&panel.rows), &points, &by_importance(&panel.rows), (&area, &front(&panel.rows, &points)));
     for (label, point) in labels.iter().zip(&points) {
         leader(&mut body, label, *point);
     }
@@ -168,7 +175,8 @@ fn title(report: &Report) -> String {
 /// The name beside a symbol; returns where the next symbol goes.
 fn legend_entry(text: &mut String, at: f64, name: &str) -> f64 {
     let _ = writeln!(text, "<text x=\"{:.1}\" y=\"49\">{name}</text>", at + 10.0);
-    at + 30.0 + 7.2 * name.chars().count() as f64
+    let width = |c: char| if c.is_uppercase() { 8.4 } else { 6.9 };
+    at + 30.0 + name.chars().map(width).sum::<f64>()
 }
 
 fn color(quality: &str) -> String {
@@ -206,10 +214,15 @@ fn marker(body: &mut String, mark: &Mark<'_>, point: Point) {
     }
 }
 
-fn front_line(body: &mut String, rows: &[Mark<'_>], points: &[Point]) {
+/// The points on the front, by time.
+fn front(rows: &[Mark<'_>], points: &[Point]) -> Vec<Point> {
     let marks = rows.iter().zip(points).filter(|(mark, _)| mark.is_on_front);
     let mut front: Vec<Point> = marks.map(|(_, point)| *point).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    front
+}
+
+fn front_line(body: &mut String, front: &[Point]) {
     let points: Vec<String> = front.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
     let _ = writeln!(
         body,
@@ -266,15 +279,23 @@ fn by_importance(rows: &[Mark<'_>]) -> Vec<usize> {
     order
 }
 
-/// Where labels go: beside their points, not on each other and not on points. `None` where there is no room.
-fn labels(widths: &[f64], points: &[Point], order: &[usize], area: &Rectangle) -> Vec<Option<Rectangle>> {
+/// Where labels go: beside their points, not on each other, not on points and, if that can be, not on the front line.
+/// `None` where there is no room.
+fn labels(
+    widths: &[f64],
+    points: &[Point],
+    order: &[usize],
+    (area, line): (&Rectangle, &[Point]),
+) -> Vec<Option<Rectangle>> {
     let mut placed: Vec<Option<Rectangle>> = vec![None; widths.len()];
     let mut taken: Vec<Rectangle> = points.iter().map(|point| around(*point, MARKER + 1.0)).collect();
     // The base comes first, and has its ring.
     taken.extend(order.first().map(|&base| around(points[base], RING)));
     for &i in order {
         let free = |place: &Rectangle| is_inside(place, area) && !taken.iter().any(|other| overlap(place, other));
-        placed[i] = candidates(points[i], widths[i]).find(free);
+        let crosses = |place: &Rectangle| line.windows(2).any(|ends| crosses(place, ends[0], ends[1]));
+        let places = || candidates(points[i], widths[i]);
+        placed[i] = places().find(|place| free(place) && !crosses(place)).or_else(|| places().find(free));
         taken.extend(placed[i]);
     }
     placed
@@ -295,6 +316,15 @@ fn candidates((x, y): Point, width: f64) -> impl Iterator<Item = Rectangle> {
             let left = at_x - width * 0.5 * (1.0 - f64::signum(dx) * f64::from(u8::from(dx != 0.0)));
             [left, middle_y - 0.5 * LABEL_HEIGHT, left + width, middle_y + 0.5 * LABEL_HEIGHT]
         })
+    })
+}
+
+/// Whether the line from `a` to `b` goes through a place, looked at every few pixels.
+fn crosses(place: &Rectangle, a: Point, b: Point) -> bool {
+    let steps = ((b.0 - a.0).hypot(b.1 - a.1) / 3.0).ceil().max(1.0);
+    (0..=steps as u32).map(|i| f64::from(i) / steps).any(|t| {
+        let at = (a.0 + (b.0 - a.0) * t, a.1 + (b.1 - a.1) * t);
+        overlap(place, &around(at, 0.5))
     })
 }
 
@@ -333,11 +363,11 @@ mod tests {
 
     #[test]
     fn axes_hold_their_values_and_have_a_few_round_ticks() {
-        for values in [[0.7, 4.0], [0.003, 0.3], [1.0, 1.0], [1e-5, 1e3]] {
+        for values in [[0.7, 4.0], [0.003, 0.3], [1.0, 1.0], [1e-5, 1e3], [0.9, 1.1], [0.041, 0.055], [0.29, 2.1]] {
             let axis = Axis::around(values.into_iter(), (100.0, 600.0));
             assert!(values.iter().all(|&value| (100.0..=600.0).contains(&axis.at(value))), "{values:?}");
             let ticks = axis.ticks();
-            assert!((3..=14).contains(&ticks.len()), "{values:?}: {ticks:?}");
+            assert!((3..=10).contains(&ticks.len()), "{values:?}: {ticks:?}");
             assert!(ticks.is_sorted() && ticks.iter().all(|&tick| (100.0..=600.0).contains(&axis.at(tick))));
         }
     }
@@ -350,7 +380,7 @@ mod tests {
             (0..12).map(|i| (300.0 + f64::from(i % 4) * 9.0, 250.0 + f64::from(i / 4) * 11.0)).collect();
         points.extend([(500.0, 200.0), (500.0, 200.0), (697.0, 447.0)]);
         let order: Vec<usize> = (0..points.len()).collect();
-        let placed = labels(&vec![110.0; points.len()], &points, &order, &area);
+        let placed = labels(&vec![110.0; points.len()], &points, &order, (&area, &[(60.0, 60.0), (690.0, 60.0)]));
         let boxes: Vec<Rectangle> = placed.iter().flatten().copied().collect();
         assert_eq!(boxes.len(), points.len(), "{placed:?}");
         for (i, label) in boxes.iter().enumerate() {

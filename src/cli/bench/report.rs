@@ -28,13 +28,17 @@ impl Figure {
     }
 
     fn text(&self) -> String {
-        let bound = if self.is_visible { "" } else { "< " };
+        // A term that neither side has is not below any noise.
+        let bound = if self.is_visible || self.upper == 0.0 { "" } else { "< " };
         format!("{bound}{}", percent(self.upper))
     }
 }
 
 /// In percent, with three digits or as many as there are before the point.
 pub(super) fn percent(share: f64) -> String {
+    if share == 0.0 {
+        return "0 %".into();
+    }
     let value = 100.0 * share;
     let digits = (2.0 - value.abs().max(1e-4).log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.digits$} %")
@@ -316,7 +320,7 @@ mod tests {
     #[test]
     fn shares_have_three_digits() {
         let texts = [0.1234, 0.01234, 0.001234, 1.234, 1e-9, 0.0].map(percent);
-        assert_eq!(texts, ["12.3 %", "1.23 %", "0.123 %", "123 %", "0.000000 %", "0.000000 %"]);
+        assert_eq!(texts, ["12.3 %", "1.23 %", "0.123 %", "123 %", "0.000000 %", "0 %"]);
     }
 
     #[test]
