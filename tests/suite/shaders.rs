@@ -153,7 +153,7 @@ fn forward_modules_use_all_that_is_bound_and_nothing_else() {
             // standard lobes read.
             offered.retain(|(group, binding), _| *group > 0 || used.contains_key(&(0, *binding)));
         }
-        if features.reflection() == Quality::SplitSum {
+        if !features.reads_taps() {
             // So is the tier: the view may change it.
             offered.remove(&(0, FRAME_TAPS));
         }
