@@ -106,7 +106,7 @@ fn errors(gpu: &Gpu, name: &str, image: &EnvironmentImage, lobes: &[Lobe]) -> Ve
     println!("{name}: split-sum, draft, standard, high");
     let row = |lobe: &Lobe| {
         let sphere = sphere(lobe, image);
-        let row = Quality::ALL.map(|quality| sphere.error(gpu, ShaderSources::default(), &maps, quality));
+        let row = Quality::ALL.map(|quality| sphere.error(gpu, &ShaderSources::default(), &maps, quality));
         println!("  {:40} {}", lobe.0, row.map(|error| format!("{:6.2} %", 100.0 * error)).join(" "));
         row
     };

@@ -48,7 +48,8 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
             vertex: VertexFeatures::of(&features, primitive),
             energy_compensation: !slots.is_multiple_of(5),
             geometry: Geometry::ALL[slots as usize % 5],
-            quality: Quality::ALL[slots as usize % 4],
+            // Anisotropic materials are every fourth: they get every tier too.
+            quality: Quality::ALL[(slots + slots / 4) as usize % 4],
             topology: Topology::Triangles,
         }
     })

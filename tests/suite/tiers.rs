@@ -70,7 +70,7 @@ impl Sphere {
     }
 
     /// RMS of the error over that of the truth.
-    pub(crate) fn error(&self, gpu: &Gpu, shaders: ShaderSources, maps: &Maps, quality: Quality) -> f64 {
+    pub(crate) fn error(&self, gpu: &Gpu, shaders: &ShaderSources, maps: &Maps, quality: Quality) -> f64 {
         let view = specula::scene::View { quality, ..front_view(SIDE_PX) };
         let options = CaptureOptions { samples: 1, precision: Precision::Float };
         let draw = |scene| {
@@ -169,7 +169,7 @@ fn errors(gpu: &Gpu, image: &EnvironmentImage, material: fn(f32) -> Material) ->
     let maps = Maps::new(image);
     let of_roughness = |r: f32| {
         let sphere = Sphere::new(material(r), image);
-        Quality::ALL.map(|quality| sphere.error(gpu, ShaderSources::default(), &maps, quality))
+        Quality::ALL.map(|quality| sphere.error(gpu, &ShaderSources::default(), &maps, quality))
     };
     PERCEPTUAL_ROUGHNESS.map(of_roughness).into()
 }
@@ -250,7 +250,7 @@ impl Tiers {
         });
         pairs
             .map(|(name, sphere, tier, limit)| {
-                let error = sphere.error(gpu, shaders.clone(), &self.maps, tier);
+                let error = sphere.error(gpu, shaders, &self.maps, tier);
                 println!("  {name}, {}: {:.2} % of {:.2} %", tier.name(), 100.0 * error, 100.0 * limit);
                 (error > *limit, format!("{name}, {}", tier.name()))
             })
