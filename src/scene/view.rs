@@ -81,7 +81,7 @@ pub enum Quality {
     SplitSum,
     /// One fitted lookup a lobe.
     Draft,
-    /// Two fitted lookups; three for a lobe that is longer than wide.
+    /// Two fitted lookups; three or five for a lobe that is longer than wide.
     #[default]
     Standard,
     /// Three fitted lookups; five for a lobe that is longer than wide.

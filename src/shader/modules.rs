@@ -113,6 +113,8 @@ fn reflection(features: &ForwardFeatures) -> &'static str {
         (Quality::Standard, true) => "lighting/reflection_standard.wgsl",
         (Quality::High, true) => "lighting/reflection_high.wgsl",
         (Quality::Draft, false) => "lighting/reflection_line_draft.wgsl",
+        // Its alpha along the tangent goes up to 3: three taps would leave gaps.
+        (Quality::Standard, false) if features.material.disney_anisotropic => "lighting/reflection_line_high.wgsl",
         (Quality::Standard, false) => "lighting/reflection_line_standard.wgsl",
         (Quality::High, false) => "lighting/reflection_line_high.wgsl",
     }

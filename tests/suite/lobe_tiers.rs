@@ -161,11 +161,11 @@ pub(crate) fn lobe_tiers() -> Tiers {
     let spheres = vec![
         ("brushed metal", whole(brushed(1.0, 0.3, 0.5)), [0.276, 0.123, 0.083]),
         ("brushed dielectric", whole(brushed(0.0, 0.5, 0.4)), [0.535, 0.291, 0.219]),
-        ("disney metal", whole(grey(1.0, 1.0, 0.4, Disney { anisotropic: 0.7, ..NEUTRAL })), [0.186, 0.087, 0.048]),
+        ("disney metal", whole(grey(1.0, 1.0, 0.4, Disney { anisotropic: 0.7, ..NEUTRAL })), [0.186, 0.048, 0.048]),
         (
             "disney dielectric",
             whole(grey(0.0, 0.0, 0.6, Disney { anisotropic: 0.3, ..NEUTRAL })),
-            [0.398, 0.249, 0.186],
+            [0.398, 0.186, 0.186],
         ),
         ("subsurface", lobe(Disney { subsurface: 1.0, ..NEUTRAL }, 0.7), [0.057; 3]),
         ("diffuse", lobe(NEUTRAL, 1.0), [0.031; 3]),
