@@ -1,5 +1,6 @@
 #import "brdf/d_ggx_anisotropic.wgsl"
 #import "math/vectors.wgsl"
+#import "lighting/bent_mirror.wgsl"
 #import "lighting/dfg.wgsl"
 #import <visibility_anisotropic>
 
@@ -58,10 +59,7 @@ fn compensated_share(shape: Shape) -> f32 {
     return 1.0 - shape.contrast * shape.contrast;
 }
 
-// Where the specular lobe looks for the environment. Facets lean along t, and those that reflect toward the viewer lean
-// toward it: the normal is bent to the viewer's side within the plane of t and n (after McAuley 2015), the more so the
-// wider the spread along t is than along b.
+// Where the specular lobe looks for the environment.
 fn mirror_direction(shape: Shape, n: vec3f, v: vec3f) -> vec3f {
-    let leaning = normalize_or(v - shape.b * dot(shape.b, v), n);
-    return reflect(-v, normalize_or(mix(n, leaning, 0.5 * shape.contrast), n));
+    return bent_mirror_direction(shape.contrast, shape.b, n, v);
 }

@@ -72,19 +72,19 @@ impl Geometry {
     }
 }
 
-/// How light from the environment is reflected by isotropic glTF materials: time against error, see docs/ibl.md.
+/// How light from the environment is reflected: time against error, see docs/ibl.md.
 ///
 /// Suns that the maps have been parted from are shaded in every tier. `SplitSum` is meant for maps that hold all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum Quality {
     /// One lookup in the mirror direction (Karis 2013): the baseline.
     SplitSum,
-    /// One fitted lookup.
+    /// One fitted lookup a lobe.
     Draft,
-    /// Two fitted lookups.
+    /// Two fitted lookups; three or five for a lobe that is longer than wide.
     #[default]
     Standard,
-    /// Three fitted lookups.
+    /// Three fitted lookups; five for a lobe that is longer than wide.
     High,
 }
 

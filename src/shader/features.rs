@@ -176,6 +176,11 @@ impl MaterialFeatures {
         self.textures[slot as usize]
     }
 
+    /// Whether the specular lobe is the one that `bake::taps` was fitted for: GGX, the same in all directions.
+    pub fn has_round_lobes(&self) -> bool {
+        self.shading == Shading::Lit && !self.anisotropic
+    }
+
     /// The texture slots that are sampled.
     pub fn textures(&self) -> impl Iterator<Item = (TextureSlot, TextureUse)> {
         TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.texture(slot)?)))
@@ -246,10 +251,15 @@ pub struct ForwardFeatures {
 }
 
 impl ForwardFeatures {
-    /// How the environment is reflected. Only round lobes have fitted taps.
+    /// How the environment is reflected.
     pub fn reflection(&self) -> Quality {
-        let round = self.material.shading == Shading::Lit && !self.material.anisotropic;
-        if round && self.scene.environment { self.quality } else { Quality::SplitSum }
+        let reflects = self.material.shading.is_lit() && self.scene.environment;
+        if reflects { self.quality } else { Quality::SplitSum }
+    }
+
+    /// Whether the table of `bake::taps` is read.
+    pub fn reads_taps(&self) -> bool {
+        self.reflection() != Quality::SplitSum && self.material.has_round_lobes()
     }
 
     /// Topology changes no code, so modules are shared across it.

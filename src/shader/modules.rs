@@ -86,14 +86,18 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
             "chosen_lobes",
             choose(material.shading == Shading::Disney, "channel/lobes_disney.wgsl", "channel/lobes_standard.wgsl"),
         ),
+        ("reflection", Slot::File(reflection(features))),
         (
-            "reflection",
+            "other_lookups",
             Slot::File(match features.reflection() {
-                Quality::SplitSum => "lighting/reflection_mirror.wgsl",
-                Quality::Draft => "lighting/reflection_draft.wgsl",
-                Quality::Standard => "lighting/reflection_standard.wgsl",
-                Quality::High => "lighting/reflection_high.wgsl",
+                Quality::SplitSum => "lighting/disney_lookups_plain.wgsl",
+                Quality::Draft => "lighting/disney_lookups_draft.wgsl",
+                Quality::Standard | Quality::High => "lighting/disney_lookups_standard.wgsl",
             }),
+        ),
+        (
+            "facets",
+            choose(material.shading == Shading::Disney, "lighting/facets_disney.wgsl", "lighting/facets_standard.wgsl"),
         ),
         (
             "multiscatter",
@@ -118,6 +122,23 @@ fn shading(shading: Shading, term: Option<Term>) -> &'static str {
         (_, None | Some(Term::Emission)) => "lighting/emissive_only.wgsl",
         (Shading::Lit | Shading::Disney, Some(_)) => "lighting/lit_term.wgsl",
         (_, Some(_)) => "lighting/black.wgsl",
+    }
+}
+
+fn reflection(features: &ForwardFeatures) -> &'static str {
+    match (features.reflection(), features.material.has_round_lobes()) {
+        (Quality::SplitSum, _) if features.material.shading == Shading::Disney => {
+            "lighting/reflection_mirror_disney.wgsl"
+        }
+        (Quality::SplitSum, _) => "lighting/reflection_mirror.wgsl",
+        (Quality::Draft, true) => "lighting/reflection_draft.wgsl",
+        (Quality::Standard, true) => "lighting/reflection_standard.wgsl",
+        (Quality::High, true) => "lighting/reflection_high.wgsl",
+        (Quality::Draft, false) => "lighting/reflection_line_draft.wgsl",
+        // Its alpha along the tangent goes up to 3: three taps would leave gaps.
+        (Quality::Standard, false) if features.material.disney_anisotropic => "lighting/reflection_line_high.wgsl",
+        (Quality::Standard, false) => "lighting/reflection_line_standard.wgsl",
+        (Quality::High, false) => "lighting/reflection_line_high.wgsl",
     }
 }
 

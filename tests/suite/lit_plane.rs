@@ -4,7 +4,7 @@
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
 use crate::support::{add_light, draw_with, gpu};
-use glam::{DMat4, DVec2, DVec3, DVec4, UVec2, Vec2, Vec3, Vec4, vec2, vec3};
+use glam::{DMat4, DVec2, DVec3, UVec2, Vec2, Vec3, Vec4, vec2, vec3};
 use specula::bake::environment;
 use specula::capture::CaptureOptions;
 use specula::gpu::Gpu;
@@ -228,17 +228,10 @@ fn disney_split_sum(
     let radiance_around =
         |facing: DVec3, r: f64| maps.specular(panorama.environment_from_world(2.0 * facing.dot(v) * facing - v), r);
     let (alpha_x, alpha_y) = disney::alphas(r, f64::from(disney.anisotropic));
-    let excess = alpha_x * alpha_x - alpha_y * alpha_y;
-    let tap = |i: u32| {
-        let c: f64 = (2.0 * f64::from(i) + 1.0) / 15.0 - 1.0;
-        // The slope below which lies the share (1 + c) / 2 of them.
-        let facing = (n + frame.tangent * (excess.sqrt() * c.asin().tan())).normalize();
-        let NoL = n.dot(2.0 * facing.dot(v) * facing - v).max(1e-9);
-        let weight = facing.dot(v).max(0.0) * disney::G1_SmithGGX(disney::alpha_of_masking(r), NoL) / facing.dot(n);
-        let alpha = (alpha_y * alpha_y + excess / 225.0).sqrt();
-        (radiance_around(facing, alpha.sqrt().min(1.0)) * weight).extend(weight)
-    };
-    let taps: DVec4 = (0..15).map(tap).sum();
+    // Bent to the viewer's side of the plane across which the facets lean most.
+    let contrast = (alpha_x.powi(2) - alpha_y.powi(2)) / (alpha_x.powi(2) + alpha_y.powi(2));
+    let leaning = (v - frame.bitangent * y).normalize();
+    let bent = n.lerp(leaning, 0.5 * contrast).normalize();
     let pair = quadrature.specular(r, f64::from(disney.anisotropic), NoV, y.atan2(x));
     let (specular, tint) = (f64::from(disney.specular), f64::from(disney.specular_tint));
     let F0 = disney::specular_f0(material.base_color, material.metallic, specular, tint);
@@ -250,7 +243,7 @@ fn disney_split_sum(
     let sheen = DVec3::ONE.lerp(disney::tint(material.base_color), f64::from(disney.sheen_tint));
     let cloth = material.base_color * below + sheen * (f64::from(disney.sheen) * smooth.sheen);
     let E_over_pi = maps.irradiance_over_pi(panorama.environment_from_world(n));
-    let radiance = taps.truncate() / taps.w * pair.with_fresnel(F0, 1.0)
+    let radiance = radiance_around(bent, r) * pair.with_fresnel(F0, 1.0)
         + coat * (0.25 * f64::from(disney.clearcoat))
         + cloth * E_over_pi * (1.0 - material.metallic);
     radiance * panorama.intensity

@@ -1,6 +1,8 @@
 //! Planted faults: a test of the tests. Each is a plausible slip of the pen, and some comparison has to reject it.
 
+use crate::grazing::grazing_tiers;
 use crate::lit_plane::{Plane, disney_planes, planes};
+use crate::lobe_tiers::lobe_tiers;
 use crate::support::gpu;
 use crate::tiers::Tiers;
 use crate::twins::files;
@@ -244,22 +246,24 @@ const IN_DISNEY_FRAMES: &[Mutant] = &[
     fault("lighting/disney_albedo.wgsl", "texel.xy * 2.0", "texel.xy"),
     fault("lighting/disney_albedo.wgsl", "return root * root", "return root"),
     fault("lighting/disney_albedo.wgsl", "DISNEY_TILES - 1.0, clearcoat_gloss", "DISNEY_TILES - 1.0, 1.0"),
-    fault("lighting/environment_disney.wgsl", "lobes.n + lobes.t * (", "lobes.n + lobes.b * ("),
-    fault("lighting/environment_disney.wgsl", "(sqrt(excess / (1.0 - c * c)) * c)", "(sqrt(excess) * c)"),
-    fault("lighting/environment_disney.wgsl", "saturate(dot(lobes.v, h)) * G1_", "G1_"),
-    fault("lighting/environment_disney.wgsl", "excess * step * step * 0.25", "excess * step * 0.25"),
     fault("lighting/environment_disney.wgsl", "along.x * along.x - along.y * along.y", "along.x * along.x"),
-    fault("lighting/environment_disney.wgsl", "sqrt(sqrt(lobes.clearcoat_alpha))", "sqrt(lobes.clearcoat_alpha)"),
-    fault("lighting/environment_disney.wgsl", "mix(albedo.x, albedo.y, lobes.subsurface)", "albedo.x"),
-    fault("lighting/environment_disney.wgsl", "lobes.sheen * albedo.z", "lobes.sheen"),
+    fault("lighting/environment_disney.wgsl", "albedo.x * (1.0 - lobes.subsurface)", "albedo.x"),
+    fault("lighting/environment_disney.wgsl", "* lobes.sheen * albedo.z", "* lobes.sheen"),
+    fault("lighting/disney_lookups_plain.wgsl", "sqrt(sqrt(lobes.clearcoat_alpha))", "sqrt(lobes.clearcoat_alpha)"),
+    fault("lighting/reflection_mirror_disney.wgsl", "(t2 - b2) / (t2 + b2)", "(t2 - b2)"),
+    fault("lighting/bent_mirror.wgsl", "b * dot(b, v)", "b"),
+    fault("lighting/bent_mirror.wgsl", "0.5 * contrast", "contrast"),
     fault("surface/tangent_vertex.wgsl", "tangent - n * dot(n, tangent)", "tangent.yzx"),
 ];
 
 /// Files whose faults [`IN_DISNEY_FRAMES`] must show.
-const DISNEY_LIGHTING: [&str; 4] = [
+const DISNEY_LIGHTING: [&str; 7] = [
+    "lighting/bent_mirror.wgsl",
     "lighting/disney.wgsl",
     "lighting/disney_albedo.wgsl",
+    "lighting/disney_lookups_plain.wgsl",
     "lighting/environment_disney.wgsl",
+    "lighting/reflection_mirror_disney.wgsl",
     "surface/tangent_vertex.wgsl",
 ];
 
@@ -292,6 +296,57 @@ const TIER_LIGHTING: [&str; 5] = [
     "lighting/reflection_draft.wgsl",
     "lighting/reflection_standard.wgsl",
     "lighting/reflection_high.wgsl",
+];
+
+/// Faults in how stretched lobes and those of Disney look for the environment.
+const IN_LOBE_TIERS: &[Mutant] = &[
+    fault("lighting/visible_facets.wgsl", "VoH * VoH * dot(a, b)", "dot(a, b)"),
+    fault("lighting/visible_facets.wgsl", "normalize(line.alpha * line.v)", "line.v"),
+    fault("lighting/visible_facets.wgsl", "select(along, -along, lean < 0.0)", "along"),
+    fault("lighting/visible_facets.wgsl", "vec2f(half_difference + radius, xy)", "vec2f(xy, half_difference + radius)"),
+    fault("lighting/visible_facets.wgsl", "2.0 * radius / largest", "radius / largest"),
+    fault("lighting/visible_facets.wgsl", "turn / (4.0 + turn)", "turn"),
+    fault("lighting/visible_facets.wgsl", "line.to_environment * l, r", "l, r"),
+    fault("lighting/visible_facets.wgsl", "vec2f(-line.along.y, line.along.x)", "line.along"),
+    fault("lighting/visible_facets.wgsl", "0.5 * width", "width"),
+    fault("lighting/visible_facets.wgsl", " * (1.0 - place * place));", ");"),
+    fault("lighting/facets_standard.wgsl", "reflectance(lobes.fresnel, VoH) * ", "vec3f(1.0) * "),
+    fault("lighting/facets_standard.wgsl", "v.z * length(alpha * l)", "v.z * length(l)"),
+    fault("lighting/facets_standard.wgsl", "lobes.shape.t, lobes.shape.alpha_t", "lobes.shape.t, lobes.shape.alpha"),
+    fault("lighting/facets_disney.wgsl", "F_Schlick(lobes.F0, 1.0, VoH) * ", "vec3f(1.0) * "),
+    fault("lighting/facets_disney.wgsl", "lobes.b, lobes.alpha_y", "lobes.b, lobes.alpha_x"),
+    fault("lighting/reflection_line_draft.wgsl", "0.3089 * longer", "0.0"),
+    fault("lighting/reflection_line_standard.wgsl", "place - reach, end", "place + reach, end"),
+    fault("lighting/reflection_line_standard.wgsl", "mix(0.8494, 2.5253, long)", "0.8494"),
+    fault("lighting/reflection_line_high.wgsl", "place + near", "place - near"),
+    fault("lighting/reflection_line_high.wgsl", "* end_tilt)", "/ end_tilt)"),
+    fault("lighting/disney_smooth.wgsl", "lobes.n * lobes.NoV - lobes.v", "lobes.v - lobes.n * lobes.NoV"),
+    fault("lighting/disney_smooth.wgsl", "to_environment * direction, 0.5", "to_environment * direction, 0.8"),
+    fault("lighting/disney_smooth.wgsl", "- mean;", ";"),
+    fault("lighting/disney_smooth.wgsl", "0.28 * r", "0.6 * r"),
+    fault("lighting/disney_smooth.wgsl", "0.79 - 0.03 * r", "1.0"),
+    fault("lighting/disney_lookups_draft.wgsl", "(0.539 + lobes.NoV)", "1.539"),
+    fault("lighting/disney_lookups_standard.wgsl", "cos(angle) + inward", "cos(angle) - inward"),
+    fault("lighting/disney_lookups_standard.wgsl", "0.508", "0.8"),
+];
+
+/// Files whose faults [`IN_LOBE_TIERS`] must show.
+const LOBE_TIER_LIGHTING: [&str; 9] = [
+    "lighting/disney_lookups_draft.wgsl",
+    "lighting/disney_lookups_standard.wgsl",
+    "lighting/disney_smooth.wgsl",
+    "lighting/facets_disney.wgsl",
+    "lighting/facets_standard.wgsl",
+    "lighting/reflection_line_draft.wgsl",
+    "lighting/reflection_line_high.wgsl",
+    "lighting/reflection_line_standard.wgsl",
+    "lighting/visible_facets.wgsl",
+];
+
+/// Faults by which narrow taps see suns in the mirror level that are shaded already.
+const AT_GRAZING_SUNS: &[Mutant] = &[
+    fault("lighting/taps.wgsl", "max(r, min(plane.perceptual_roughness, 1.0 / environment.level_scale))", "r"),
+    fault("lighting/visible_facets.wgsl", "clamp(sqrt(alpha), line.least_r, 1.0)", "min(sqrt(alpha), 1.0)"),
 ];
 
 impl Mutant {
@@ -366,6 +421,21 @@ fn disney_frames_reject_every_planted_fault() {
 #[test]
 fn tiers_reject_every_planted_fault() {
     let gpu = gpu(Precision::Float);
-    let tiers = Tiers::new();
+    let tiers = Tiers::round();
     all_are_rejected(IN_TIERS, TIER_LIGHTING.into_iter(), |mutant| tiers.rejecting(&gpu, &mutant.sources()));
+}
+
+#[test]
+fn lobe_tiers_reject_every_planted_fault() {
+    let gpu = gpu(Precision::Float);
+    let tiers = lobe_tiers();
+    all_are_rejected(IN_LOBE_TIERS, LOBE_TIER_LIGHTING.into_iter(), |mutant| tiers.rejecting(&gpu, &mutant.sources()));
+}
+
+#[test]
+fn grazing_suns_reject_taps_that_read_the_mirror_level() {
+    let gpu = gpu(Precision::Float);
+    let tiers = grazing_tiers();
+    let files = ["lighting/taps.wgsl", "lighting/visible_facets.wgsl"];
+    all_are_rejected(AT_GRAZING_SUNS, files.into_iter(), |mutant| tiers.rejecting(&gpu, &mutant.sources()));
 }

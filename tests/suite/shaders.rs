@@ -54,7 +54,8 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
             vertex: VertexFeatures::of(&features, primitive),
             energy_compensation: !slots.is_multiple_of(5),
             geometry: Geometry::ALL[slots as usize % 5],
-            quality: Quality::ALL[slots as usize % 4],
+            // Anisotropic materials are every fourth: they get every tier too.
+            quality: Quality::ALL[(slots + slots / 4) as usize % 4],
             term: None,
             topology: Topology::Triangles,
             channel: slots % 9 < 4,
@@ -161,7 +162,7 @@ fn forward_modules_use_all_that_is_bound_and_nothing_else() {
             // standard lobes read.
             offered.retain(|(group, binding), _| *group > 0 || used.contains_key(&(0, *binding)));
         }
-        if features.reflection() == Quality::SplitSum {
+        if !features.reads_taps() {
             // So is the tier: the view may change it.
             offered.remove(&(0, FRAME_TAPS));
         }

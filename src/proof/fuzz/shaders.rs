@@ -120,7 +120,7 @@ impl Resources {
         }
         if features.material.shading.is_lit() {
             entries.push((bindings::FRAME_SAMPLER, wgpu::BindingResource::Sampler(&self.shared.clamp_sampler)));
-            if self.features.reflection() != Quality::SplitSum {
+            if self.features.reads_taps() {
                 entries.push((bindings::FRAME_TAPS, wgpu::BindingResource::TextureView(&self.shared.taps)));
             }
             if self.features.scene.environment {

@@ -1,0 +1,68 @@
+//! Suns where grazing pixels of a smooth sphere mirror them. There the taps of a lobe are much narrower than it is, but
+//! must not read the mirror level, which holds the suns that are shaded already.
+
+use crate::support::{front_view, gpu, sphere_scene};
+use crate::tiers::{SIDE_PX, Sphere, Tiers, placed};
+use glam::{DVec2, DVec3, Vec4};
+use specula::gpu::formats::Precision;
+use specula::math::spaces::direction_from_equirect;
+use specula::reference::geometry::Ray;
+use specula::reference::surface::World;
+use specula::scene::{Disney, EnvironmentImage, Material};
+use specula::shader::ShaderSources;
+
+/// The mirror level ends at 1/8: narrower taps than 5/8 of the lobe would read it.
+const PERCEPTUAL_ROUGHNESS: f32 = 0.2;
+
+fn metal(disney: Option<Disney>) -> Material {
+    let perceptual_roughness = PERCEPTUAL_ROUGHNESS;
+    Material { base_color: Vec4::ONE, metallic: 1.0, perceptual_roughness, disney, ..Default::default() }
+}
+
+/// The mirror directions, in the panorama's frame, of all pixels that look at the sphere from the side.
+fn grazing_mirrors() -> Vec<DVec3> {
+    let (scene, view) = (sphere_scene(metal(None)), front_view(SIDE_PX));
+    let environment = placed(&EnvironmentImage::constant(glam::Vec3::ZERO));
+    let world = World::new(&scene, &view);
+    let mirror = |i: u32| {
+        let center = DVec2::new(f64::from(i % SIDE_PX), f64::from(i / SIDE_PX)) + 0.5;
+        let (origin, direction) = view.camera.ray(center, view.size_px);
+        let layers = world.layers(&Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY });
+        let n = world.surface(&layers.first()?.hit).normal_in_world;
+        let mirror = direction.reflect(n);
+        (0.15..0.35).contains(&-n.dot(direction)).then(|| environment.environment_from_world(mirror))
+    };
+    (0..SIDE_PX * SIDE_PX).filter_map(mirror).collect()
+}
+
+/// Four suns in an even sky.
+fn sky() -> EnvironmentImage {
+    let (width, height) = (512, 256);
+    let mirrors = grazing_mirrors();
+    assert!(mirrors.len() >= 8, "{}", mirrors.len());
+    let suns = [0, 1, 2, 3].map(|i| mirrors[i * mirrors.len() / 4]);
+    let texel = |i: u32| {
+        let uv = DVec2::new(f64::from(i % width) + 0.5, f64::from(i / width) + 0.5);
+        let direction = direction_from_equirect(uv / DVec2::new(f64::from(width), f64::from(height)));
+        let lit = suns.iter().any(|sun| direction.dot(*sun) > f64::cos(0.014));
+        DVec3::splat(if lit { 2000.0 } else { 0.3 }).as_vec3()
+    };
+    EnvironmentImage { width, height, texels: (0..width * height).map(texel).collect() }
+}
+
+pub(crate) fn grazing_tiers() -> Tiers {
+    let image = sky();
+    assert_eq!(specula::bake::sun::extract(&image).suns.len(), 4);
+    let sphere = |material| Sphere::new(material, &image);
+    // Errors measured on llvmpipe, times 1.1. Taps that may read the mirror level triple them.
+    let spheres = vec![
+        ("metal", sphere(metal(None)), [0.127; 3]),
+        ("disney metal", sphere(metal(Some(Disney::default()))), [0.114; 3]),
+    ];
+    Tiers::new(&image, spheres)
+}
+
+#[test]
+fn suns_are_not_seen_twice_at_grazing_angles() {
+    assert_eq!(grazing_tiers().rejecting(&gpu(Precision::Float), &ShaderSources::default()), None);
+}
