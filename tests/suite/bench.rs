@@ -46,7 +46,7 @@ fn settings_are_measured_reported_and_drawn() {
 
     let svg = std::fs::read_to_string(svg).unwrap();
     assert_eq!(svg.matches("<polyline").count(), 2);
-    assert!(svg.contains("default") && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    assert!(svg.contains(">base<") && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
 }
 
 #[test]

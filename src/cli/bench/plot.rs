@@ -166,7 +166,7 @@ fn title(report: &Report) -> String {
         at = legend_entry(&mut text, at, sampling);
     }
     text += &ring((at, 45.0), 7.0);
-    let at = legend_entry(&mut text, at, "default");
+    let at = legend_entry(&mut text, at, "base");
     let _ = writeln!(text, "<path d=\"M{:.1} 45h18\" stroke=\"#333333\" stroke-width=\"1.4\"/>", at - MARKER);
     legend_entry(&mut text, at + 12.0, "front");
     text
@@ -250,7 +250,7 @@ fn axes(body: &mut String, (x, y): (&Axis, &Axis), (time, what): (&str, &str)) {
     let middle = 0.5 * (left + right);
     let _ = writeln!(
         body,
-        "<text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{time} of a frame, relative to the default</text>",
+        "<text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{time} of a frame, relative to the base</text>",
         floor + 40.0
     );
     let middle = 0.5 * (floor + ceiling);
