@@ -17,7 +17,7 @@ fn specular_radiance(lobes: Lobes, to_environment: mat3x3f) -> vec3f {
     // Wide enough to meet its neighbours.
     let alpha = sqrt(lobes.alpha_y * lobes.alpha_y + excess * step * step * 0.25);
     // The mirror level, which holds the suns, is read to the share that `sun_radiance` leaves.
-    let least_r = min(lobes.perceptual_roughness, 1.0 / environment.level_scale);
+    let least_r = min(lobes.perceptual_roughness, FINEST_PERCEPTUAL_ROUGHNESS);
     var sum = vec4f(0.0);
     for (var i = 0; i < TAPS; i++) {
         let c = (f32(i) + 0.5) * step - 1.0;

@@ -7,7 +7,7 @@ fn sun_radiance(lobes: Lobes) -> vec3f {
         if dot(lobes.n, sun.xyz) <= 0.0 {
             continue;
         }
-        let disc = lobes_of_disc(lobes, sun.w, saturate(lobes.perceptual_roughness * environment.level_scale));
+        let disc = lobes_of_disc(lobes, sun.w, saturate(level_of(lobes.perceptual_roughness)));
         radiance += evaluate_lobes(disc, sun.xyz) * environment.sun_illuminance[i].xyz;
     }
     return radiance;
