@@ -18,11 +18,8 @@ fn sheen_radiance(lobes: Lobes, to_environment: mat3x3f) -> vec3f {
 
 // Irradiance / pi with the harmonics of degree 1 and 2 scaled, for lobes that are flatter than the cosine.
 fn irradiance_scaled(direction: vec3f, degree_1: f32, degree_2: f32) -> vec3f {
-    let there = irradiance_over_pi_sh(environment.irradiance_over_pi, direction);
-    let behind = irradiance_over_pi_sh(environment.irradiance_over_pi, -direction);
-    let mean = environment.irradiance_over_pi[0].xyz;
-    let even = 0.5 * (there + behind) - mean;
-    return max(mean + 0.5 * (there - behind) * degree_1 + even * degree_2, vec3f(0.0));
+    let there = harmonics_at(environment.irradiance_over_pi, direction);
+    return max(there.mean + there.linear * degree_1 + there.quadratic * degree_2, vec3f(0.0));
 }
 
 // Rough surfaces send light back to where it came from: seen from the side their lobe leans toward the viewer. The one

@@ -5,15 +5,25 @@
 @group(0) @binding(5) var<uniform> environment: EnvironmentUniform;
 @group(0) @binding(6) var environment_atlas: texture_2d<f32>;
 
-fn atlas_level(level: u32, uv: vec2f) -> vec3f {
-    let tile = environment.tiles[level];
+// Levels of the specular maps: 0 is the mirror image, 1 has this perceptual roughness, from there alpha doubles.
+const FINEST_PERCEPTUAL_ROUGHNESS: f32 = 0.08838834764831845;
+const LAST_LEVEL: f32 = 8.0;
+
+fn level_of(perceptual_roughness: f32) -> f32 {
+    let below = perceptual_roughness / FINEST_PERCEPTUAL_ROUGHNESS;
+    return select(LAST_LEVEL + 2.0 * log2(perceptual_roughness), below, below < 1.0);
+}
+
+// What one level holds, at octahedral coordinates.
+fn atlas_level(level: f32, uv: vec2f) -> vec3f {
+    let tile = environment.tiles[u32(level)];
     return textureSampleLevel(environment_atlas, clamp_sampler, tile.xy + uv * tile.zw, 0.0).xyz;
 }
 
-// GGX-prefiltered radiance around a unit direction of the panorama, linear between two levels of perceptual roughness.
+// GGX-prefiltered radiance around a direction of the panorama, linear between two levels.
 fn prefiltered_radiance(direction: vec3f, perceptual_roughness: f32) -> vec3f {
     let uv = octahedral_from_direction(direction);
-    let level = perceptual_roughness * environment.level_scale;
-    let lower = u32(min(level, environment.level_scale - 1.0));
-    return mix(atlas_level(lower, uv), atlas_level(lower + 1u, uv), level - f32(lower)) * environment.radiance_scale;
+    let level = level_of(perceptual_roughness);
+    let lower = min(floor(level), LAST_LEVEL - 1.0);
+    return mix(atlas_level(lower, uv), atlas_level(lower + 1.0, uv), level - lower) * environment.radiance_scale;
 }

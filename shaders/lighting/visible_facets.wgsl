@@ -60,7 +60,7 @@ fn line_of(lobes: Lobes, to_environment: mat3x3f) -> Line {
     let turn = largest * (2.0 + 2.0 * line.stretched.z) * inverse_length * inverse_length;
     line.size = turn / (4.0 + turn);
     // The mirror level, which holds the suns, is read to the share that `sun_radiance` leaves.
-    line.least_r = min(lobes.perceptual_roughness, 1.0 / environment.level_scale);
+    line.least_r = min(lobes.perceptual_roughness, FINEST_PERCEPTUAL_ROUGHNESS);
     return line;
 }
 

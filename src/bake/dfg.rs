@@ -16,8 +16,15 @@ const CHANNELS: usize = 4;
 static EMBEDDED: &[u8; SIZE * SIZE * CHANNELS * 2] = include_bytes!("../../assets/dfg.bin");
 
 /// The table and its file.
-pub const TABLE: EmbeddedTable =
-    EmbeddedTable { file: "dfg.bin", width: SIZE, height: SIZE, channels: CHANNELS, bytes: EMBEDDED, bake };
+pub const TABLE: EmbeddedTable = EmbeddedTable {
+    file: "dfg.bin",
+    width: SIZE,
+    height: SIZE,
+    channels: CHANNELS,
+    bytes: EMBEDDED,
+    bake,
+    check: EmbeddedTable::is_what_a_bake_makes,
+};
 
 /// Integrates the table: `SIZE * SIZE` texels of four unorm16, row-major.
 pub fn bake() -> Vec<u16> {

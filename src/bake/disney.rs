@@ -33,8 +33,15 @@ const CHANNELS: usize = 4;
 static EMBEDDED: &[u8; SIDE * HEIGHT * CHANNELS * 2] = include_bytes!("../../assets/disney.bin");
 
 /// The table and its file.
-pub const TABLE: EmbeddedTable =
-    EmbeddedTable { file: "disney.bin", width: SIDE, height: HEIGHT, channels: CHANNELS, bytes: EMBEDDED, bake };
+pub const TABLE: EmbeddedTable = EmbeddedTable {
+    file: "disney.bin",
+    width: SIDE,
+    height: HEIGHT,
+    channels: CHANNELS,
+    bytes: EMBEDDED,
+    bake,
+    check: EmbeddedTable::is_what_a_bake_makes,
+};
 
 /// Integrates the table.
 pub fn bake() -> Vec<u16> {

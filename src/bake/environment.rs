@@ -11,21 +11,19 @@ use crate::progress::Progress;
 use crate::scene::{EnvironmentImage, EnvironmentMaps};
 use glam::DVec3;
 
-/// Levels of the specular maps: level k is for perceptual roughness k / 8.
-const LEVELS: usize = 9;
+const LEVELS: usize = EnvironmentMaps::LEVELS;
 
 /// Interior sides of the tiles of a large panorama, texels. Level 0 is as sharp as the panorama. The others follow the
-/// lobe, so that bilinear lookup cuts its peak over a sun by 4 % at most at level 1, 1.5 % at level 2 and 1 % above.
-/// The rough ones are finer than that asks for: a large flat surface magnifies them until the creases of bilinear lookup
-/// show, and they fit into room that the atlas has anyway.
-const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 256, 128, 128, 128, 128, 128, 64];
+/// lobe. The rough ones are finer than that asks for: a large flat surface magnifies them until the creases of bilinear
+/// lookup show, and they fit into room that the atlas has anyway.
+const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 512, 256, 256, 128, 128, 128, 64];
 
 /// No tile has a smaller interior.
 const SMALLEST_SIDE: u32 = 32;
 
 /// Of what [`bake`] computes: raise it with every change of its results beyond rounding, so that nobody reads what an
 /// older version has stored. A test holds it against them.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Limits of [`bake`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,9 +43,9 @@ impl Default for BakeOptions {
 
 /// Prefilters `image` for shading.
 ///
-/// Level k of the specular maps holds int L(l) D(h) NoL dl / int D(h) NoL dl with n = v = r and perceptual roughness
-/// k / 8 (Karis 2013); L is [`EnvironmentImage::radiance`], from level 1 on without the suns that were taken out. The convolution is carried out per spherical harmonic, in
-/// float64, and the result is the same on every run. Radiance in cd/m2, as in the image.
+/// Level k of the specular maps holds int L(l) D(h) NoL dl / int D(h) NoL dl with n = v = r and the perceptual
+/// roughness of that level (Karis 2013); L is [`EnvironmentImage::radiance`], from level 1 on without the suns that were
+/// taken out. The convolution is carried out per spherical harmonic, in float64, and the result is the same on every run. Radiance in cd/m2, as in the image.
 pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Progress) -> EnvironmentMaps {
     progress.begin("Prefiltering the environment", LEVELS as u64 + 1);
     let sides = tile_sides(image.width, options);
@@ -60,8 +58,7 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
     let harmonics = analyse(image);
     progress.advance(1);
     for level in 1..LEVELS {
-        let perceptual_roughness = level as f64 / (LEVELS - 1) as f64;
-        let filtered = convolve(&harmonics, perceptual_roughness * perceptual_roughness);
+        let filtered = convolve(&harmonics, EnvironmentMaps::perceptual_roughness_at(level as f64).powi(2));
         // The sum of harmonics may undershoot by rounding where all is black.
         let radiance = |direction| filtered.radiance_cubic(direction).max(DVec3::ZERO);
         atlas.fill(level, |uv| radiance(direction_from_octahedral(uv)));

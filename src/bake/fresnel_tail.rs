@@ -14,8 +14,15 @@ pub const SCALE: f64 = 16.0;
 static EMBEDDED: &[u8; SIZE * SIZE * 2] = include_bytes!("../../assets/fresnel_tail.bin");
 
 /// The table and its file.
-pub const TABLE: EmbeddedTable =
-    EmbeddedTable { file: "fresnel_tail.bin", width: SIZE, height: SIZE, channels: 1, bytes: EMBEDDED, bake };
+pub const TABLE: EmbeddedTable = EmbeddedTable {
+    file: "fresnel_tail.bin",
+    width: SIZE,
+    height: SIZE,
+    channels: 1,
+    bytes: EMBEDDED,
+    bake,
+    check: EmbeddedTable::is_what_a_bake_makes,
+};
 
 /// Integrates the table: `SIZE * SIZE` unorm16, row-major.
 pub fn bake() -> Vec<u16> {

@@ -41,8 +41,8 @@ impl GpuEnvironment {
             upload(device, queue, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
         let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
         let intensity = environment.intensity;
-        let mut tiles = [[0.0; 4]; 9];
         let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
+        let mut tiles = [[0.0; 4]; EnvironmentMaps::LEVELS];
         for (tile, out) in maps.tiles.iter().zip(&mut tiles) {
             let [x, y] = tile.origin.map(|texel| texel as f32);
             *out = [x / width, y / height, tile.size as f32 / width, tile.size as f32 / height];
@@ -56,7 +56,6 @@ impl GpuEnvironment {
             tiles,
             environment_from_world: columns(environment_from_world),
             radiance_scale: scale * intensity as f32,
-            level_scale: (maps.tiles.len() - 1) as f32,
             ..Default::default()
         };
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

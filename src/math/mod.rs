@@ -3,4 +3,5 @@
 pub mod color;
 pub mod parameter;
 pub mod quadrature;
+pub mod simplex;
 pub mod spaces;

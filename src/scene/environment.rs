@@ -94,7 +94,7 @@ pub struct SpecularTile {
 
 /// What shading reads of an environment, baked from its image, in the panorama's own frame.
 ///
-/// Specular: one octahedral tile a level of perceptual roughness, all in one atlas, so that a level may have any size
+/// Specular: one octahedral tile a level, all in one atlas, so that a level may have any size
 /// and one bilinear tap reads one level. A border of one texel around each tile repeats the octahedron's neighbours.
 #[derive(Debug, Clone)]
 pub struct EnvironmentMaps {
@@ -106,7 +106,7 @@ pub struct EnvironmentMaps {
     /// cosine lobe (Ramamoorthi and Hanrahan 2001): evaluated as
     /// c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2).
     pub irradiance_over_pi: [DVec3; 9],
-    /// Level k holds perceptual roughness k / (tiles.len() - 1).
+    /// [`EnvironmentMaps::LEVELS`] of them. Level 0 is the mirror image, the others are for [`EnvironmentMaps::perceptual_roughness_at`].
     pub tiles: Vec<SpecularTile>,
     pub atlas_width: u32,
     pub atlas_height: u32,
@@ -115,6 +115,23 @@ pub struct EnvironmentMaps {
 }
 
 impl EnvironmentMaps {
+    /// Levels of the specular maps.
+    pub const LEVELS: usize = 9;
+    /// Perceptual roughness of level 1, where alpha is 1 / 128.
+    pub const FINEST_PERCEPTUAL_ROUGHNESS: f64 = 0.088_388_347_648_318_45;
+
+    /// The perceptual roughness of a level. Alpha doubles from level 1 on, up to 1 at level 8, so that a mixture of two
+    /// neighbours has the same shape wherever it stands. Below level 1 lookups mix with the mirror image.
+    pub fn perceptual_roughness_at(level: f64) -> f64 {
+        if level < 1.0 { Self::FINEST_PERCEPTUAL_ROUGHNESS * level } else { (0.5 * level - 4.0).exp2() }
+    }
+
+    /// The level, in [0, 8], of a perceptual roughness in [0, 1].
+    pub fn level_of(perceptual_roughness: f64) -> f64 {
+        let below = perceptual_roughness / Self::FINEST_PERCEPTUAL_ROUGHNESS;
+        if below < 1.0 { below } else { 8.0 + 2.0 * perceptual_roughness.log2() }
+    }
+
     /// Irradiance / pi, cd/m2, on a surface with the unit normal `n`; slightly negative at worst, opposite to a sun.
     pub fn irradiance_over_pi(&self, n: DVec3) -> DVec3 {
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = self.irradiance_over_pi;
@@ -130,12 +147,10 @@ impl EnvironmentMaps {
 
     /// Prefiltered radiance, cd/m2, toward the unit vector `direction`; linear between texels and between levels.
     pub fn specular(&self, direction: DVec3, perceptual_roughness: f64) -> DVec3 {
-        let last = self.tiles.len() - 1;
-        let level = perceptual_roughness.clamp(0.0, 1.0) * last as f64;
-        let below = (level.floor() as usize).min(last);
-        let above = (below + 1).min(last);
+        let level = Self::level_of(perceptual_roughness.clamp(0.0, 1.0));
+        let below = (level as usize).min(Self::LEVELS - 2);
         let uv = octahedral_from_direction(direction);
-        self.tile_bilinear(below, uv).lerp(self.tile_bilinear(above, uv), level - below as f64)
+        self.tile_bilinear(below, uv).lerp(self.tile_bilinear(below + 1, uv), level - below as f64)
     }
 
     /// Bilinear lookup in one tile; `uv` in [0, 1] spans its interior.

@@ -65,10 +65,9 @@ gpu_struct! {
         environment_from_world: mat3x3f,
         /// Intensity, and the scale that brought the radiance into half-float range.
         radiance_scale: f32,
-        /// Levels - 1.
-        level_scale: f32,
         sun_count: u32,
         pad_0: f32,
+        pad_1: f32,
         /// In the world, with what the disc adds to alpha squared.
         suns: [vec4f; 4],
         /// Lux, times the intensity.

@@ -272,26 +272,33 @@ const IN_TIERS: &[Mutant] = &[
     fault("lighting/sun.wgsl", "sun_illuminance[i]", "sun_illuminance[0]"),
     fault("lighting/sun.wgsl", "let sun = environment.suns[i]", "let sun = environment.suns[0]"),
     fault("lighting/sun.wgsl", "lobes, sun.w,", "lobes, 0.0,"),
-    fault("lighting/sun.wgsl", "saturate(lobes.perceptual_roughness * environment.level_scale)", "1.0"),
-    fault("lighting/taps.wgsl", "offset * 16.0 - 8.0", "8.0 - offset * 16.0"),
-    fault("lighting/taps.wgsl", "sqrt(8.0 * width)", "8.0 * width"),
-    fault(
-        "lighting/taps.wgsl",
-        "plane.cos_theta * c - plane.sin_theta * s",
-        "plane.cos_theta * c + plane.sin_theta * s",
-    ),
-    fault("lighting/taps.wgsl", "to_environment * tangent", "tangent"),
-    fault("lighting/taps.wgsl", "vec2f(lobes.NoV, lobes", "vec2f(sqrt(lobes.NoV), lobes"),
+    fault("lighting/sun.wgsl", "saturate(level_of(lobes.perceptual_roughness))", "1.0"),
+    fault("lighting/prefiltered.wgsl", "LAST_LEVEL + 2.0 * log2", "LAST_LEVEL + log2"),
+    fault("lighting/taps.wgsl", "stored.x * TAPS_SCALE + TAPS_BIAS", "TAPS_BIAS - stored.x * TAPS_SCALE"),
+    fault("lighting/taps.wgsl", "stored.y * LAST_LEVEL", "stored.y * 7.0"),
+    fault("lighting/taps.wgsl", "place + spread * share", "place - spread * share"),
+    fault("lighting/taps.wgsl", "place - spread * (1.0 - share)", "place"),
+    fault("lighting/taps.wgsl", "twice * lobes.NoV - 1.0", "twice * lobes.NoV"),
+    fault("lighting/taps.wgsl", "let v = to_environment * lobes.v", "let v = lobes.v"),
+    fault("lighting/taps.wgsl", "vec2f(plane.NoV, plane.level", "vec2f(sqrt(plane.NoV), plane.level"),
+    fault("lighting/taps.wgsl", "plane.sky.linear * mix", "plane.sky.quadratic * mix"),
+    fault("lighting/taps.wgsl", "vec3f(weights.w), vec3f(weights.y)", "vec3f(weights.y), vec3f(weights.w)"),
     fault("lighting/taps.wgsl", "(lobes.single_scatter - dielectric)", "lobes.single_scatter"),
-    fault("lighting/reflection_draft.wgsl", "fit.z, fit.w", "0.5, fit.w"),
-    fault("lighting/reflection_standard.wgsl", "vec3f(shares.y), vec3f(shares.x)", "vec3f(shares.x), vec3f(shares.y)"),
+    fault("lighting/reflection_draft.wgsl", "taps_texel(2.0, plane).x", "one.w"),
+    fault(
+        "lighting/reflection_standard.wgsl",
+        "vec3f(dielectric.x), vec3f(one.w)",
+        "vec3f(one.w), vec3f(dielectric.x)",
+    ),
+    fault("lighting/reflection_standard.wgsl", "taps_texel(5.0, plane)", "taps_texel(1.0, plane)"),
     fault("lighting/reflection_high.wgsl", "vec3f(dielectric.y)", "vec3f(dielectric.x)"),
-    fault("lighting/reflection_high.wgsl", "offsets.z, widths.z", "offsets.y, widths.z"),
+    fault("lighting/reflection_high.wgsl", "tap(plane, three.xyz)", "tap(plane, two.xyz)"),
 ];
 
 /// Files whose faults [`IN_TIERS`] must show.
-const TIER_LIGHTING: [&str; 5] = [
+const TIER_LIGHTING: [&str; 6] = [
     "lighting/sun.wgsl",
+    "lighting/prefiltered.wgsl",
     "lighting/taps.wgsl",
     "lighting/reflection_draft.wgsl",
     "lighting/reflection_standard.wgsl",
@@ -344,10 +351,8 @@ const LOBE_TIER_LIGHTING: [&str; 9] = [
 ];
 
 /// Faults by which narrow taps see suns in the mirror level that are shaded already.
-const AT_GRAZING_SUNS: &[Mutant] = &[
-    fault("lighting/taps.wgsl", "max(r, min(plane.perceptual_roughness, 1.0 / environment.level_scale))", "r"),
-    fault("lighting/visible_facets.wgsl", "clamp(sqrt(alpha), line.least_r, 1.0)", "min(sqrt(alpha), 1.0)"),
-];
+const AT_GRAZING_SUNS: &[Mutant] =
+    &[fault("lighting/visible_facets.wgsl", "clamp(sqrt(alpha), line.least_r, 1.0)", "min(sqrt(alpha), 1.0)")];
 
 impl Mutant {
     fn sources(&self) -> ShaderSources {

@@ -1,212 +1,180 @@
-//! The fitted taps themselves. Each set minimises the expected squared error over all rotations of an environment whose
-//! power falls with the degree l as (1 + l)^-2, so no panorama took part: offsets and widths by Nelder and Mead 1965,
-//! weights by non-negative least squares.
+//! The search for taps: one lobe from many starts, its neighbours from there, and then all of them against each other
+//! until the table is smooth.
 
-/// Perceptual roughness of the rows. Below, lobes keep their shape in units of alpha.
-pub(super) const PERCEPTUAL_ROUGHNESS: [f64; 5] = [0.3, 0.45, 0.6, 0.8, 1.0];
-/// Cosines of the view of the columns.
-pub(super) const NOV: [f64; 6] = [0.1, 0.25, 0.45, 0.65, 0.85, 0.97];
+use super::kernels::Kernels;
+use super::lobe::{Lobe, PLACE_MAX, Tap};
+use super::{COLUMNS, FITTED_ROWS, Shared, level_of_row, nov_of_column};
+use crate::math::simplex::minimize;
+use crate::reference::sampling::PixelSampler;
+use crate::scene::EnvironmentMaps;
+use rayon::prelude::*;
 
-/// One prefiltered lookup that stands for a part of the lobe.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Tap {
-    /// Angle from the mirror direction within the plane of incidence, away from the normal, over alpha.
-    pub(super) offset: f64,
-    /// Its own alpha over the lobe's.
-    pub(super) width: f64,
-    /// Its share of the lobe with F0 = 1, and with F0 = 0.04.
-    pub(super) share_metal: f64,
-    pub(super) share_dielectric: f64,
+/// Variables of a tap: place, level and spread.
+const VARIABLES: usize = 3;
+/// Starts of the search at the first lobe.
+const STARTS: u32 = 96;
+const EVALUATIONS: usize = 400;
+/// In a sweep, where the start is close.
+const EVALUATIONS_OF_SWEEP: usize = 100;
+const SWEEPS: i32 = 24;
+/// What a difference of 1 from the mean of the neighbours costs, in shares of the variance of what is seen: in the first
+/// sweep, where regions that follow different minima have to agree, and in the last.
+const SMOOTHNESS: [f64; 2] = [3e-3, 1e-5];
+
+/// All lobes of the table that are fitted, row by row.
+pub(super) struct Lobes<'a> {
+    lobes: Vec<Lobe<'a>>,
+    levels: Vec<f64>,
+    scales: Vec<f64>,
 }
 
-const fn tap(offset: f64, width: f64, share_metal: f64, share_dielectric: f64) -> Tap {
-    Tap { offset, width, share_metal, share_dielectric }
+impl<'a> Lobes<'a> {
+    pub(super) fn new(kernels: &'a Kernels) -> Self {
+        let level = |i: usize| level_of_row(FITTED_ROWS.start + i / COLUMNS);
+        let lobe = |i: usize| {
+            Lobe::new(kernels, EnvironmentMaps::perceptual_roughness_at(level(i)), nov_of_column(i % COLUMNS))
+        };
+        let count = FITTED_ROWS.len() * COLUMNS;
+        let lobes: Vec<Lobe> = (0..count).into_par_iter().map(lobe).collect();
+        let levels: Vec<f64> = (0..count).map(level).collect();
+        let scales = lobes.iter().zip(&levels).map(|(lobe, level)| lobe.scale(*level)).collect();
+        Self { lobes, levels, scales }
+    }
+
+    fn cost(&self, i: usize, variables: &[f64]) -> f64 {
+        cost(&self.lobes[i], self.levels[i], self.scales[i], variables)
+    }
+
+    /// The best end of searches from several starts; `rough` is added to the cost.
+    fn search(
+        &self,
+        i: usize,
+        starts: impl IntoIterator<Item = Vec<f64>>,
+        evaluations: usize,
+        rough: impl Fn(&[f64]) -> f64,
+    ) -> Vec<f64> {
+        let cost = |variables: &[f64]| self.cost(i, variables) + rough(variables);
+        let ends = starts.into_iter().map(|start| {
+            let once = minimize(cost, &start, 0.25, evaluations, 1e-9);
+            minimize(cost, &once.at, 0.1, evaluations, 1e-10)
+        });
+        ends.min_by(|a, b| a.value.total_cmp(&b.value)).map(|end| end.at).unwrap_or_default()
+    }
+
+    /// `count` taps for every lobe.
+    pub(super) fn fit(&self, count: usize) -> Vec<Shared> {
+        let mut found = self.spread_out(count);
+        for sweep in 0..SWEEPS {
+            let smoothness =
+                SMOOTHNESS[0] * (SMOOTHNESS[1] / SMOOTHNESS[0]).powf(f64::from(sweep) / f64::from(SWEEPS - 1));
+            for color in 0..2 {
+                let is_next = |i: &usize| (i / COLUMNS + i % COLUMNS) % 2 == color;
+                let better = |i: usize| (i, self.smoothed(&found, i, sweep as usize, smoothness));
+                let better: Vec<_> = (0..self.lobes.len()).into_par_iter().filter(is_next).map(better).collect();
+                better.into_iter().for_each(|(i, at)| found[i] = at);
+            }
+        }
+        let shared = |(i, variables): (usize, &Vec<f64>)| {
+            let taps = held(self.levels[i], variables);
+            let weights = self.lobes[i].fit(&taps).weights;
+            Shared { taps, weights }
+        };
+        found.iter().enumerate().map(shared).collect()
+    }
+
+    /// One lobe from many starts, and from there to all others.
+    fn spread_out(&self, count: usize) -> Vec<Vec<f64>> {
+        let first = FITTED_ROWS.len() / 2 * COLUMNS + COLUMNS / 2;
+        let from =
+            |start: u32| self.search(first, [random_start(start, count, self.levels[first])], EVALUATIONS, |_| 0.0);
+        let ends: Vec<Vec<f64>> = (0..STARTS).into_par_iter().map(from).collect();
+        let mut found: Vec<Option<Vec<f64>>> = vec![None; self.lobes.len()];
+        found[first] = Some(self.search(first, ends, EVALUATIONS, |_| 0.0));
+        while found.iter().any(Option::is_none) {
+            let reached = |i: usize| {
+                let starts: Vec<Vec<f64>> =
+                    neighbours(i).filter_map(|j| Some(self.moved(found[j].as_ref()?, j, i))).collect();
+                (!starts.is_empty()).then(|| (i, self.search(i, starts, EVALUATIONS, |_| 0.0)))
+            };
+            let next: Vec<_> =
+                (0..found.len()).into_par_iter().filter(|&i| found[i].is_none()).filter_map(reached).collect();
+            next.into_iter().for_each(|(i, at)| found[i] = Some(at));
+        }
+        found.into_iter().flatten().collect()
+    }
+
+    /// One lobe again, drawn to its neighbours; one of them is tried as a start.
+    fn smoothed(&self, found: &[Vec<f64>], i: usize, sweep: usize, smoothness: f64) -> Vec<f64> {
+        let beside: Vec<Vec<f64>> = neighbours(i).map(|j| self.moved(&found[j], j, i)).collect();
+        let mean: Vec<f64> = (0..found[i].len())
+            .map(|k| beside.iter().map(|variables| variables[k]).sum::<f64>() / beside.len() as f64)
+            .collect();
+        let rough = |variables: &[f64]| {
+            let halfway = |other: &Vec<f64>| {
+                let middle: Vec<f64> = variables.iter().zip(other).map(|(a, b)| 0.5 * (a + b)).collect();
+                self.cost(i, &middle)
+            };
+            let between = beside.iter().map(halfway).sum::<f64>() / beside.len() as f64;
+            between + smoothness * variables.iter().zip(&mean).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
+        };
+        let starts = [found[i].clone(), mean.clone(), beside[sweep % beside.len()].clone()];
+        self.search(i, starts, EVALUATIONS_OF_SWEEP, rough)
+    }
+
+    /// The variables of lobe `from` as they would be at `to`: levels follow those of the rows.
+    fn moved(&self, variables: &[f64], from: usize, to: usize) -> Vec<f64> {
+        let step = self.levels[to] - self.levels[from];
+        variables.iter().enumerate().map(|(i, x)| if i % VARIABLES == 1 { x + step } else { *x }).collect()
+    }
 }
 
-/// 1 tap.
-pub(super) const FIT_1: [[[Tap; 1]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()] = [
-    [
-        [tap(-0.8759, 0.4825, 1.0, 1.0)],
-        [tap(-0.201, 0.5597, 1.0, 1.0)],
-        [tap(0.0567, 0.7261, 1.0, 1.0)],
-        [tap(0.0095, 0.8587, 1.0, 1.0)],
-        [tap(-0.0129, 0.9613, 1.0, 1.0)],
-        [tap(-0.0008, 1.027, 1.0, 1.0)],
-    ],
-    [
-        [tap(-1.0686, 0.5136, 1.0, 1.0)],
-        [tap(-0.5186, 0.5459, 1.0, 1.0)],
-        [tap(-0.131, 0.7044, 1.0, 1.0)],
-        [tap(-0.0735, 0.8991, 1.0, 1.0)],
-        [tap(-0.0555, 1.0332, 1.0, 1.0)],
-        [tap(-0.0178, 1.1234, 1.0, 1.0)],
-    ],
-    [
-        [tap(-1.0548, 0.6014, 1.0, 1.0)],
-        [tap(-0.7362, 0.6425, 1.0, 1.0)],
-        [tap(-0.4678, 0.7872, 1.0, 1.0)],
-        [tap(-0.3503, 0.9786, 1.0, 1.0)],
-        [tap(-0.2179, 1.1431, 1.0, 1.0)],
-        [tap(-0.0844, 1.2515, 1.0, 1.0)],
-    ],
-    [
-        [tap(-1.128, 0.9971, 1.0, 1.0)],
-        [tap(-1.0331, 1.0996, 1.0, 1.0)],
-        [tap(-0.9135, 1.2652, 1.0, 1.0)],
-        [tap(-0.7509, 1.3529, 1.0, 1.0)],
-        [tap(-0.487, 1.3981, 1.0, 1.0)],
-        [tap(-0.2124, 1.4488, 1.0, 1.0)],
-    ],
-    [
-        [tap(-1.0705, 1.0, 1.0, 1.0)],
-        [tap(-1.0615, 1.0, 1.0, 1.0)],
-        [tap(-0.9781, 1.0, 1.0, 1.0)],
-        [tap(-0.8142, 1.0, 1.0, 1.0)],
-        [tap(-0.5427, 1.0, 1.0, 1.0)],
-        [tap(-0.2433, 1.0, 1.0, 1.0)],
-    ],
-];
+/// What a search from stored taps gains, in shares of the variance of what is seen.
+pub(super) fn gain(lobe: &Lobe, level: f64, stored: &Shared) -> f64 {
+    let scale = lobe.scale(level);
+    let start: Vec<f64> = stored.taps.iter().flat_map(|tap| [tap.place, tap.level, tap.spread]).collect();
+    let best = minimize(|variables| cost(lobe, level, scale, variables), &start, 0.1, EVALUATIONS, 1e-10);
+    lobe.with_weights(&stored.taps, &stored.weights).cost() / scale - best.value
+}
 
-/// 2 taps.
-pub(super) const FIT_2: [[[Tap; 2]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()] = [
-    [
-        [tap(-2.0824, 0.5131, 0.5863, 0.4006), tap(-0.3255, 0.2296, 0.4138, 0.5994)],
-        [tap(-1.1778, 0.4887, 0.6018, 0.4094), tap(0.5013, 0.3287, 0.3982, 0.5906)],
-        [tap(-0.7331, 0.6036, 0.6635, 0.4686), tap(1.0376, 0.521, 0.3365, 0.5314)],
-        [tap(-0.671, 0.7528, 0.6214, 0.5371), tap(0.961, 0.717, 0.3786, 0.4629)],
-        [tap(-0.6139, 0.9582, 0.4894, 0.4837), tap(0.499, 0.8669, 0.5106, 0.5163)],
-        [tap(-0.0203, 1.1221, 0.8487, 0.8491), tap(0.0594, 0.6466, 0.1513, 0.1509)],
-    ],
-    [
-        [tap(-2.5349, 0.785, 0.6471, 0.2723), tap(-0.637, 0.2564, 0.3529, 0.7277)],
-        [tap(-1.7168, 0.6818, 0.644, 0.2935), tap(-0.0354, 0.2991, 0.356, 0.7065)],
-        [tap(-1.0555, 0.7184, 0.6928, 0.3967), tap(0.5825, 0.4087, 0.3072, 0.6033)],
-        [tap(-0.8209, 0.8641, 0.666, 0.5258), tap(0.7973, 0.6112, 0.3341, 0.4742)],
-        [tap(-3.4554, 1.8378, 0.0834, 0.0798), tap(0.0373, 0.961, 0.9166, 0.9202)],
-        [tap(-0.8359, 4.9383, 0.1254, 0.127), tap(0.0061, 1.0025, 0.8746, 0.873)],
-    ],
-    [
-        [tap(-2.5601, 1.1251, 0.715, 0.2347), tap(-0.6142, 0.2766, 0.285, 0.7652)],
-        [tap(-2.0246, 0.9902, 0.7018, 0.2744), tap(-0.2501, 0.3135, 0.2982, 0.7256)],
-        [tap(-1.4975, 0.99, 0.7015, 0.397), tap(0.1667, 0.3845, 0.2985, 0.603)],
-        [tap(-1.4501, 1.2076, 0.5514, 0.4241), tap(0.2425, 0.5894, 0.4486, 0.5759)],
-        [tap(-1.7244, 1.916, 0.2699, 0.255), tap(0.0607, 0.9103, 0.7301, 0.745)],
-        [tap(-1.3479, 2.5644, 0.179, 0.1784), tap(0.0619, 1.1054, 0.821, 0.8216)],
-    ],
-    [
-        [tap(-2.1092, 1.5625, 0.8317, 0.3583), tap(-0.4242, 0.2692, 0.1683, 0.6417)],
-        [tap(-1.818, 1.473, 0.8338, 0.4494), tap(-0.236, 0.2986, 0.1662, 0.5506)],
-        [tap(-1.508, 1.4207, 0.8109, 0.5667), tap(-0.0268, 0.3794, 0.1891, 0.4333)],
-        [tap(-1.2175, 1.5347, 0.7569, 0.6451), tap(0.045, 0.5254, 0.2431, 0.3549)],
-        [tap(-2.4774, 1.0153, 0.0895, 0.0805), tap(-0.3653, 1.1909, 0.9105, 0.9195)],
-        [tap(-0.3728, 1.5625, 0.8052, 0.8004), tap(0.3266, 0.8365, 0.1948, 0.1996)],
-    ],
-    [
-        [tap(-1.7073, 1.0, 0.8355, 0.4509), tap(-0.2571, 0.2787, 0.1645, 0.5491)],
-        [tap(-1.4928, 1.0, 0.8677, 0.5804), tap(-0.1228, 0.298, 0.1323, 0.4197)],
-        [tap(-1.2451, 1.0, 0.885, 0.718), tap(0.0754, 0.347, 0.115, 0.282)],
-        [tap(-0.9877, 1.0, 0.8903, 0.8138), tap(0.2876, 0.432, 0.1097, 0.1862)],
-        [tap(-0.6645, 1.0, 0.8949, 0.8732), tap(0.5558, 0.5268, 0.1051, 0.1268)],
-        [tap(-0.3469, 1.0, 0.8989, 0.8943), tap(0.8445, 0.5729, 0.1011, 0.1057)],
-    ],
-];
+/// Expected squared error over the variance of what is seen, with a penalty outside the table's range.
+fn cost(lobe: &Lobe, level: f64, scale: f64, variables: &[f64]) -> f64 {
+    let taps = held(level, variables);
+    let outside: f64 = taps.iter().zip(unbounded(variables)).map(|(held, tap)| distance(*held, tap)).sum();
+    lobe.fit(&taps).cost() / scale + outside
+}
 
-/// 3 taps.
-pub(super) const FIT_3: [[[Tap; 3]; NOV.len()]; PERCEPTUAL_ROUGHNESS.len()] = [
-    [
-        [tap(-3.0956, 0.6521, 0.4012, 0.212), tap(-1.139, 0.2224, 0.3369, 0.3863), tap(-0.0396, 0.17, 0.2619, 0.4017)],
-        [
-            tap(-2.2255, 0.6344, 0.3551, 0.1855),
-            tap(-0.5325, 0.2554, 0.3399, 0.3451),
-            tap(0.7457, 0.3001, 0.305, 0.4695),
-        ],
-        [tap(-1.5188, 0.6826, 0.3994, 0.2479), tap(0.0674, 0.3841, 0.4079, 0.4114), tap(1.697, 0.5159, 0.1927, 0.3406)],
-        [
-            tap(-1.5005, 0.8782, 0.3193, 0.2752),
-            tap(0.0971, 0.5618, 0.5109, 0.4824),
-            tap(1.9331, 0.8115, 0.1698, 0.2425),
-        ],
-        [tap(-2.1315, 1.5408, 0.114, 0.115), tap(-0.2879, 0.7573, 0.5344, 0.5256), tap(0.8764, 0.9678, 0.3516, 0.3594)],
-        [tap(-3.0207, 0.6463, 0.006, 0.006), tap(-0.0442, 0.71, 0.2242, 0.2235), tap(0.0357, 1.1457, 0.7698, 0.7705)],
-    ],
-    [
-        [
-            tap(-3.6149, 1.1652, 0.4713, 0.1238),
-            tap(-1.3984, 0.2907, 0.3469, 0.412),
-            tap(-0.3563, 0.1704, 0.1817, 0.4642),
-        ],
-        [
-            tap(-2.8076, 1.0003, 0.4115, 0.1237),
-            tap(-0.8281, 0.3342, 0.4024, 0.4175),
-            tap(0.2554, 0.2194, 0.1861, 0.4588),
-        ],
-        [
-            tap(-2.1364, 1.0014, 0.3753, 0.1814),
-            tap(-0.3422, 0.4274, 0.4557, 0.405),
-            tap(0.9231, 0.3502, 0.1691, 0.4136),
-        ],
-        [tap(-2.2885, 1.3401, 0.2345, 0.195), tap(-0.2412, 0.6352, 0.6039, 0.5127), tap(1.3221, 0.558, 0.1615, 0.2923)],
-        [
-            tap(-2.4701, 2.7632, 0.1278, 0.1314),
-            tap(-0.3517, 0.8393, 0.5893, 0.5631),
-            tap(0.8924, 0.8805, 0.283, 0.3056),
-        ],
-        [tap(-6.2297, 0.644, 0.0032, 0.0027), tap(-0.6356, 4.9383, 0.1198, 0.1222), tap(0.0031, 1.0044, 0.877, 0.8751)],
-    ],
-    [
-        [
-            tap(-3.6076, 1.7961, 0.4978, 0.1199),
-            tap(-1.3934, 0.3854, 0.3689, 0.3465),
-            tap(-0.4134, 0.1967, 0.1334, 0.5335),
-        ],
-        [
-            tap(-2.8758, 1.3383, 0.4865, 0.1684),
-            tap(-0.8376, 0.407, 0.4315, 0.4377),
-            tap(0.0256, 0.1842, 0.0819, 0.3938),
-        ],
-        [
-            tap(-2.6693, 1.6154, 0.3589, 0.2107),
-            tap(-0.7022, 0.5417, 0.5009, 0.3584),
-            tap(0.3949, 0.3139, 0.1401, 0.4308),
-        ],
-        [
-            tap(-2.1828, 1.9263, 0.3028, 0.2676),
-            tap(-0.4073, 0.6932, 0.5841, 0.4783),
-            tap(0.7938, 0.4127, 0.1131, 0.2541),
-        ],
-        [
-            tap(-1.5323, 2.1697, 0.2862, 0.2867),
-            tap(-0.0539, 0.8753, 0.6768, 0.6476),
-            tap(1.2487, 0.5663, 0.0371, 0.0657),
-        ],
-        [tap(-0.7613, 2.7778, 0.301, 0.3018), tap(-0.43, 0.6838, 0.0916, 0.0864), tap(0.1485, 1.0322, 0.6074, 0.6117)],
-    ],
-    [
-        [tap(-2.109, 1.5625, 0.8317, 0.3582), tap(-0.4244, 0.2692, 0.1683, 0.6418), tap(-0.2465, 1.4202, 0.0, 0.0)],
-        [
-            tap(-2.0597, 1.5625, 0.6774, 0.3664),
-            tap(-0.6591, 0.4684, 0.3043, 0.3016),
-            tap(-0.0765, 0.2075, 0.0183, 0.332),
-        ],
-        [
-            tap(-3.5607, 1.0072, 0.0589, 0.0563),
-            tap(-1.2962, 1.2097, 0.8095, 0.5656),
-            tap(0.0181, 0.3332, 0.1317, 0.3781),
-        ],
-        [
-            tap(-1.2954, 1.5625, 0.667, 0.6071),
-            tap(-0.1803, 0.6073, 0.3302, 0.2774),
-            tap(0.4925, 0.3149, 0.0028, 0.1155),
-        ],
-        [tap(-0.8017, 1.5625, 0.727, 0.7236), tap(-0.1243, 0.6958, 0.0818, 0.0), tap(0.2083, 0.684, 0.1912, 0.2764)],
-        [tap(-0.371, 1.5625, 0.8097, 0.8036), tap(0.3274, 0.8163, 0.1903, 0.1857), tap(0.5464, 1.5625, 0.0, 0.0106)],
-    ],
-    [
-        [tap(-2.2342, 1.0, 0.395, 0.2036), tap(-1.0459, 1.0, 0.5886, 0.3841), tap(-0.2365, 0.2207, 0.0164, 0.4123)],
-        [tap(-1.8291, 1.0, 0.4459, 0.286), tap(-0.9957, 1.0, 0.5104, 0.3925), tap(-0.1043, 0.2354, 0.0437, 0.3215)],
-        [tap(-1.6826, 1.0, 0.3144, 0.2669), tap(-0.9248, 1.0, 0.6381, 0.5081), tap(0.0727, 0.316, 0.0475, 0.2251)],
-        [tap(-1.7861, 1.0, 0.117, 0.1138), tap(-0.8284, 1.0, 0.8292, 0.7533), tap(0.3175, 0.3817, 0.0539, 0.1328)],
-        [tap(-1.5373, 1.0, 0.0788, 0.0802), tap(-0.5553, 1.0, 0.8583, 0.8336), tap(0.5862, 0.5188, 0.0629, 0.0862)],
-        [tap(-1.3563, 0.648, 0.0638, 0.0645), tap(-0.2367, 1.0, 0.8787, 0.8725), tap(0.8695, 0.7619, 0.0575, 0.0631)],
-    ],
-];
+/// The nearest taps that the table can hold. Those of level 1 are next to the mirror image and keep off it.
+fn held(level: f64, variables: &[f64]) -> Vec<Tap> {
+    let widest = if level > 1.0 { 8.0 } else { 1.0 };
+    let held = |tap: Tap| Tap {
+        place: tap.place.clamp(-PLACE_MAX, PLACE_MAX),
+        level: tap.level.clamp(1.0, widest),
+        spread: tap.spread.clamp(-PLACE_MAX, PLACE_MAX),
+    };
+    unbounded(variables).map(held).collect()
+}
+
+fn neighbours(i: usize) -> impl Iterator<Item = usize> {
+    let (row, column) = (i / COLUMNS, i % COLUMNS);
+    [(0, -1), (0, 1), (-1, 0), (1, 0)].into_iter().filter_map(move |(down, right)| {
+        let (row, column) = (row.checked_add_signed(down)?, column.checked_add_signed(right)?);
+        (row < FITTED_ROWS.len() && column < COLUMNS).then_some(row * COLUMNS + column)
+    })
+}
+
+fn random_start(start: u32, count: usize, level: f64) -> Vec<f64> {
+    let pair = |dimension: u32| PixelSampler::new(1, 0, 0).pair(start, dimension);
+    let tap = |k: usize| {
+        let (a, b) = (pair(2 * k as u32), pair(2 * k as u32 + 1));
+        [-2.5 + 4.0 * a.x, level - 1.5 + 2.5 * a.y, -1.0 + 2.0 * b.x]
+    };
+    (0..count).flat_map(tap).collect()
+}
+
+fn unbounded(variables: &[f64]) -> impl Iterator<Item = Tap> {
+    variables.chunks_exact(VARIABLES).map(|tap| Tap { place: tap[0], level: tap[1], spread: tap[2] })
+}
+
+fn distance(a: Tap, b: Tap) -> f64 {
+    (a.place - b.place).powi(2) + (a.level - b.level).powi(2) + (a.spread - b.spread).powi(2)
+}
