@@ -76,7 +76,7 @@ fn make_lobes(surface: Surface) -> Lobes {
 
 // The lobes for a light that is a disc: wider by the variance that it adds to alpha^2, with a share of the specular one.
 // GTR1 takes the same, though its tail is longer.
-fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
+fn lobes_of_disc(lobes: Lobes, l: vec3f, variance: f32, specular_share: f32) -> Lobes {
     var disc = lobes;
     disc.alpha_x = sqrt(lobes.alpha_x * lobes.alpha_x + variance);
     disc.alpha_y = sqrt(lobes.alpha_y * lobes.alpha_y + variance);

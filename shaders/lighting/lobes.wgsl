@@ -78,11 +78,14 @@ fn make_lobes(surface: Surface) -> Lobes {
     return lobes;
 }
 
-// The lobes for a light that is a disc: wider by the variance that it adds to alpha^2, with a share of the specular one.
-fn lobes_of_disc(lobes: Lobes, variance: f32, specular_share: f32) -> Lobes {
+// The lobes for a light that is a disc around `l`, with a share of the specular one. `spread` is the squared radius of
+// its half vectors, seen along the normal.
+fn lobes_of_disc(lobes: Lobes, l: vec3f, spread: f32, specular_share: f32) -> Lobes {
     var disc = lobes;
-    disc.shape = widened(lobes.shape, variance);
-    disc.specular_share = lobes.specular_share * specular_share;
+    disc.shape = widened(lobes.shape, spread);
+    let h = unit_half_vector(l, lobes.v);
+    let of_disc = disc_share(lobes.shape, lobes.n, h, max(dot(lobes.v, h), 1e-3), spread);
+    disc.specular_share = lobes.specular_share * specular_share * of_disc;
     return disc;
 }
 

@@ -24,12 +24,18 @@ fn make_shape(surface: Surface, alpha: f32) -> Shape {
     return Shape(alpha, alpha_t, surface.tangents.t, 0.5 * (t2 + b2), surface.tangents.b, (t2 - b2) / (t2 + b2));
 }
 
-// As seen by a light that is a disc. The tables of albedo stay.
-fn widened(shape: Shape, variance: f32) -> Shape {
+// As seen by a light that is a disc: wider by the variance of its half vectors, a quarter of their squared radius. The
+// tables of albedo stay.
+fn widened(shape: Shape, spread: f32) -> Shape {
     var wider = shape;
-    wider.alpha = sqrt(shape.alpha * shape.alpha + variance);
-    wider.alpha_t = sqrt(shape.alpha_t * shape.alpha_t + variance);
+    wider.alpha = sqrt(shape.alpha * shape.alpha + spread);
+    wider.alpha_t = sqrt(shape.alpha_t * shape.alpha_t + spread);
     return wider;
+}
+
+// D averaged over the disc, over D of that shape at its middle.
+fn disc_share(shape: Shape, n: vec3f, h: vec3f, VoH: f32, spread: f32) -> f32 {
+    return 1.0;
 }
 
 // D V of the specular lobe.

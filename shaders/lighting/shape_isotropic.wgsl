@@ -10,9 +10,27 @@ fn make_shape(surface: Surface, alpha: f32) -> Shape {
     return Shape(alpha);
 }
 
+// D averaged over the half vectors of a light that is a disc, over D at its middle; `spread` is the squared radius of
+// those seen along the normal. Slopes of GGX facets are the stereographic projection of an even sphere, scaled by alpha,
+// so those in a disc are a spherical cap.
+fn disc_share(shape: Shape, n: vec3f, h: vec3f, VoH: f32, spread: f32) -> f32 {
+    let chord = n - h;
+    let chord2 = dot(chord, chord);
+    let sin2 = chord2 * (1.0 - 0.25 * chord2);
+    let alpha2 = shape.alpha * shape.alpha;
+    let middle = alpha2 + sin2 / (1.0 - sin2);
+    let radius2 = spread / VoH;
+    let x = middle - radius2;
+    let s = sqrt(x * x + 4.0 * alpha2 * radius2);
+    // Two forms of one number, each without cancellation.
+    let outside = 2.0 / (s * (s + x));
+    let inside = (s - x) / (2.0 * alpha2 * radius2 * s);
+    return middle * middle * select(inside, outside, x > 0.0);
+}
+
 // As seen by a light that is a disc.
-fn widened(shape: Shape, variance: f32) -> Shape {
-    return Shape(sqrt(shape.alpha * shape.alpha + variance));
+fn widened(shape: Shape, spread: f32) -> Shape {
+    return shape;
 }
 
 // D V of the specular lobe.

@@ -5,6 +5,6 @@ fn radiance_of_sun(lobes: Lobes, i: u32) -> vec3f {
     if dot(lobes.n, sun.xyz) <= 0.0 {
         return vec3f(0.0);
     }
-    let disc = lobes_of_disc(lobes, sun.w, saturate(level_of(lobes.perceptual_roughness)));
+    let disc = lobes_of_disc(lobes, sun.xyz, sun.w, saturate(level_of(lobes.perceptual_roughness)));
     return evaluate_lobes(disc, sun.xyz) * environment.sun_illuminance[i].xyz;
 }

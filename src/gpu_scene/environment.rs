@@ -91,10 +91,10 @@ impl GpuEnvironment {
     }
 }
 
-/// Directions in the world with what each disc adds to alpha squared, and illuminances.
+/// Directions in the world with the squared radius of each disc's half vectors, seen along the normal; illuminances.
 ///
-/// A disc's points are spread about its middle with the variance R^2 / 4 along each axis, half vectors with a quarter of
-/// that, and near its peak GGX with alpha^2 + 4 s^2 is GGX convolved with a variance of s^2.
+/// Half vectors turn by half as much as the light, R / 2. Their variance along each axis is s^2 = R^2 / 16, and near its
+/// peak GGX with alpha^2 + 4 s^2 is GGX convolved with a variance of s^2: the number is also what widens alpha^2.
 fn suns(maps: &EnvironmentMaps, environment: &Environment) -> ([[f32; 4]; MAX_SUNS], [[f32; 4]; MAX_SUNS]) {
     let (mut directions, mut illuminances) = ([[0.0; 4]; MAX_SUNS], [[0.0; 4]; MAX_SUNS]);
     for (i, sun) in maps.suns.iter().take(MAX_SUNS).enumerate() {

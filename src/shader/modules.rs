@@ -88,6 +88,13 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
         ),
         ("reflection", Slot::File(reflection(features))),
         (
+            "irradiance",
+            Slot::File(match features.reflection() {
+                Quality::SplitSum | Quality::Draft => "lighting/irradiance_harmonics.wgsl",
+                Quality::Standard | Quality::High => "lighting/irradiance_map.wgsl",
+            }),
+        ),
+        (
             "other_lookups",
             Slot::File(match features.reflection() {
                 Quality::SplitSum => "lighting/disney_lookups_plain.wgsl",

@@ -67,6 +67,8 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "lighting/fresnel_schlick.wgsl",
     "lighting/fresnel_tail.wgsl",
     "lighting/half_vector.wgsl",
+    "lighting/irradiance_harmonics.wgsl",
+    "lighting/irradiance_map.wgsl",
     "lighting/lift_view.wgsl",
     "lighting/lights.wgsl",
     "lighting/lit.wgsl",

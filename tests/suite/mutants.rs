@@ -271,7 +271,7 @@ const DISNEY_LIGHTING: [&str; 7] = [
 const IN_TIERS: &[Mutant] = &[
     fault("lighting/sun.wgsl", "sun_illuminance[i]", "sun_illuminance[0]"),
     fault("lighting/sun.wgsl", "let sun = environment.suns[i]", "let sun = environment.suns[0]"),
-    fault("lighting/sun.wgsl", "lobes, sun.w,", "lobes, 0.0,"),
+    fault("lighting/sun.wgsl", "sun.xyz, sun.w,", "sun.xyz, 1e-9,"),
     fault("lighting/sun.wgsl", "saturate(level_of(lobes.perceptual_roughness))", "1.0"),
     fault("lighting/prefiltered.wgsl", "LAST_LEVEL + 2.0 * log2", "LAST_LEVEL + log2"),
     fault("lighting/taps.wgsl", "stored.x * TAPS_SCALE + TAPS_BIAS", "TAPS_BIAS - stored.x * TAPS_SCALE"),

@@ -6,10 +6,7 @@ fn what_is_stored_comes_back() {
         taps: (0..count)
             .map(|k| Tap { place: k as f64 - 1.5, level: 2.0 + k as f64, spread: 0.5 * k as f64 })
             .collect(),
-        shares: [
-            (0..count).map(|k| 0.1 * (k + 1) as f64).collect(),
-            (0..count).map(|k| 0.05 * (k + 1) as f64).collect(),
-        ],
+        weights: [0.1, 0.05].map(|step| (0..count + 2).map(|k| step * (k + 1) as f64).collect()),
     };
     let sets = [taps(1), taps(2), taps(3)];
     let mut values = vec![0; COLUMNS * ROWS * TILES * CHANNELS];
