@@ -18,8 +18,9 @@ fn sheen_radiance(lobes: Lobes, to_environment: mat3x3f) -> vec3f {
 
 // Irradiance / pi with the harmonics of degree 1 and 2 scaled, for lobes that are flatter than the cosine.
 fn irradiance_scaled(direction: vec3f, degree_1: f32, degree_2: f32) -> vec3f {
-    let there = harmonics_at(environment.irradiance_over_pi, direction);
-    return max(there.mean + there.linear * degree_1 + there.quadratic * degree_2, vec3f(0.0));
+    let linear = irradiance_linear_sh(environment.irradiance_over_pi, direction) * degree_1;
+    let quadratic = irradiance_quadratic_sh(environment.irradiance_over_pi, direction) * degree_2;
+    return max(environment.irradiance_over_pi[0].xyz + linear + quadratic, vec3f(0.0));
 }
 
 // Rough surfaces send light back to where it came from: seen from the side their lobe leans toward the viewer. The one

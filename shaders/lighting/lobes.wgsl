@@ -84,7 +84,8 @@ fn lobes_of_disc(lobes: Lobes, l: vec3f, spread: f32, specular_share: f32) -> Lo
     var disc = lobes;
     disc.shape = widened(lobes.shape, spread);
     let h = unit_half_vector(l, lobes.v);
-    let of_disc = disc_share(lobes.shape, lobes.n, h, max(dot(lobes.v, h), 1e-3), spread);
+    let VoH = max(dot(h, l), 1e-3);
+    let of_disc = disc_share(lobes.shape, lobes.n, h, VoH, spread);
     disc.specular_share = lobes.specular_share * specular_share * of_disc;
     return disc;
 }

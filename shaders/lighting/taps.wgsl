@@ -21,8 +21,7 @@ struct Plane {
     across: vec3f,
     NoV: f32,
     level: f32,
-    // Irradiance / pi of the normal.
-    sky: Harmonics,
+    normal: vec3f,
 }
 
 fn plane_of_incidence(lobes: Lobes, to_environment: mat3x3f) -> Plane {
@@ -31,8 +30,7 @@ fn plane_of_incidence(lobes: Lobes, to_environment: mat3x3f) -> Plane {
     let alpha = lobes.perceptual_roughness * lobes.perceptual_roughness;
     let twice = 2.0 * lobes.NoV;
     let across = (n * (twice * lobes.NoV - 1.0) - v * lobes.NoV) * alpha;
-    let sky = harmonics_at(environment.irradiance_over_pi, n);
-    return Plane(n * twice - v, across, lobes.NoV, level_of(lobes.perceptual_roughness), sky);
+    return Plane(n * twice - v, across, lobes.NoV, level_of(lobes.perceptual_roughness), n);
 }
 
 fn taps_texel(tile: f32, plane: Plane) -> vec4f {
@@ -59,9 +57,11 @@ fn tap(plane: Plane, stored: vec3f) -> vec3f {
 // has them.
 fn skirt(plane: Plane, stored: vec4f, metal: vec3f, rest: vec3f) -> vec3f {
     let weights = stored * PARTS_SCALE + PARTS_BIAS;
-    return plane.sky.mean * rest
-        + plane.sky.linear * mix(vec3f(weights.z), vec3f(weights.x), metal)
-        + plane.sky.quadratic * mix(vec3f(weights.w), vec3f(weights.y), metal);
+    let linear = irradiance_linear_sh(environment.irradiance_over_pi, plane.normal);
+    let quadratic = irradiance_quadratic_sh(environment.irradiance_over_pi, plane.normal);
+    return environment.irradiance_over_pi[0].xyz * rest
+        + linear * mix(vec3f(weights.z), vec3f(weights.x), metal)
+        + quadratic * mix(vec3f(weights.w), vec3f(weights.y), metal);
 }
 
 // How much of the lobe, by energy and channel, is the one with F0 = 1; the rest is the one with F0 = 0.04. The taps'

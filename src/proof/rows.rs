@@ -278,9 +278,28 @@ pub const TWINS: &[Twin] = &[
     },
     Twin {
         file: "light/irradiance_sh.wgsl",
+        function: "irradiance_linear_sh",
+        grid: irradiances,
+        truth: |x| half_sum(&irradiance_form(x, 1.0), &irradiance_form(x, -1.0), -1.0),
+        scale: Scale::Terms(|x| x[..36].iter().map(|c| c.abs()).sum()),
+        limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "light/irradiance_sh.wgsl",
+        function: "irradiance_quadratic_sh",
+        grid: irradiances,
+        truth: |x| {
+            let even = half_sum(&irradiance_form(x, 1.0), &irradiance_form(x, -1.0), 1.0);
+            even.iter().zip(x).map(|(even, mean)| even - mean).collect()
+        },
+        scale: Scale::Terms(|x| x[..36].iter().map(|c| c.abs()).sum()),
+        limit: 8.0 * EPS,
+    },
+    Twin {
+        file: "light/irradiance_sh.wgsl",
         function: "irradiance_over_pi_sh",
         grid: irradiances,
-        truth: irradiance_by_matrix,
+        truth: |x| irradiance_form(x, 1.0).into_iter().map(|sum| sum.max(0.0)).collect(),
         // A sum of nine that may cancel.
         scale: Scale::Terms(|x| x[..36].iter().map(|c| c.abs()).sum()),
         limit: 8.0 * EPS,
@@ -400,9 +419,15 @@ fn unit_coefficient(k: usize) -> Vec<f32> {
     (0..36).map(|i| if i / 4 == k { 1.0 + (i % 4) as f32 } else { 0.0 }).collect()
 }
 
-/// Ramamoorthi and Hanrahan 2001, equation 12: the quadratic form of (n, 1) with a symmetric matrix for each channel.
-fn irradiance_by_matrix(x: &[f64]) -> Vec<f64> {
-    let n = vec3(x, 36).extend(1.0);
+/// Half of a + `sign` b.
+fn half_sum(a: &[f64], b: &[f64], sign: f64) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| 0.5 * (a + sign * b)).collect()
+}
+
+/// Ramamoorthi and Hanrahan 2001, equation 12: the quadratic form of (n, 1) with a symmetric matrix for each channel, at
+/// `side` times n.
+fn irradiance_form(x: &[f64], side: f64) -> Vec<f64> {
+    let n = (vec3(x, 36) * side).extend(1.0);
     let channel = |channel: usize| {
         let c = |k: usize| x[4 * k + channel];
         let matrix = DMat4::from_cols(
@@ -411,7 +436,7 @@ fn irradiance_by_matrix(x: &[f64]) -> Vec<f64> {
             DVec4::new(0.5 * c(7), 0.5 * c(5), 3.0 * c(6), 0.5 * c(2)),
             DVec4::new(0.5 * c(3), 0.5 * c(1), 0.5 * c(2), c(0) - c(6)),
         );
-        n.dot(matrix * n).max(0.0)
+        n.dot(matrix * n)
     };
     (0..3).map(channel).collect()
 }

@@ -105,7 +105,7 @@ const IN_FUNCTIONS: &[Mutant] = &[
     fault("light/irradiance_sh.wgsl", "3.0 * n.z * n.z", "2.0 * n.z * n.z"),
     fault("light/irradiance_sh.wgsl", "coefficients[1] * n.y", "coefficients[1] * n.x"),
     fault("light/irradiance_sh.wgsl", "coefficients[5] * (n.y", "coefficients[5] * (-n.y"),
-    fault("light/irradiance_sh.wgsl", ".xyz, vec3f(0.0))", ".xyz, vec3f(-1e9))"),
+    fault("light/irradiance_sh.wgsl", "+ uneven, vec3f(0.0))", "+ uneven, vec3f(-1e9))"),
     fault("color/srgb.wgsl", "1.055 *", "1.05 *"),
     fault("color/srgb.wgsl", "1.0 / 2.4", "1.0 / 2.2"),
     fault("color/srgb.wgsl", "0.0031308", "0.04045"),
@@ -176,7 +176,7 @@ const IN_FRAMES: &[Mutant] = &[
     fault("lighting/shape_isotropic.wgsl", "reflect(-v, n)", "n"),
     fault("lighting/reflection_mirror.wgsl", "to_environment * mirror", "mirror"),
     fault("lighting/environment.wgsl", "to_environment * lobes.n", "lobes.n"),
-    fault("lighting/prefiltered.wgsl", "level - f32(lower)", "0.0"),
+    fault("lighting/prefiltered.wgsl", "level - lower)", "0.0)"),
     fault("lighting/prefiltered.wgsl", " * environment.radiance_scale", ""),
     fault("lighting/lit.wgsl", " * surface.occlusion", ""),
     fault("lighting/lit.wgsl", " + surface.emissive", ""),
@@ -272,6 +272,9 @@ const IN_TIERS: &[Mutant] = &[
     fault("lighting/sun.wgsl", "sun_illuminance[i]", "sun_illuminance[0]"),
     fault("lighting/sun.wgsl", "let sun = environment.suns[i]", "let sun = environment.suns[0]"),
     fault("lighting/sun.wgsl", "sun.xyz, sun.w,", "sun.xyz, 1e-9,"),
+    fault("lighting/shape_isotropic.wgsl", "2.0 / (s * (s + x))", "1.0"),
+    fault("lighting/shape_isotropic.wgsl", "spread / VoH", "spread"),
+    fault("lighting/shape_isotropic.wgsl", "(s - x) / (2.0", "(s - x) / (1.0"),
     fault("lighting/sun.wgsl", "saturate(level_of(lobes.perceptual_roughness))", "1.0"),
     fault("lighting/prefiltered.wgsl", "LAST_LEVEL + 2.0 * log2", "LAST_LEVEL + log2"),
     fault("lighting/taps.wgsl", "stored.x * TAPS_SCALE + TAPS_BIAS", "TAPS_BIAS - stored.x * TAPS_SCALE"),
@@ -281,7 +284,7 @@ const IN_TIERS: &[Mutant] = &[
     fault("lighting/taps.wgsl", "twice * lobes.NoV - 1.0", "twice * lobes.NoV"),
     fault("lighting/taps.wgsl", "let v = to_environment * lobes.v", "let v = lobes.v"),
     fault("lighting/taps.wgsl", "vec2f(plane.NoV, plane.level", "vec2f(sqrt(plane.NoV), plane.level"),
-    fault("lighting/taps.wgsl", "plane.sky.linear * mix", "plane.sky.quadratic * mix"),
+    fault("lighting/taps.wgsl", " + linear * mix", " + quadratic * mix"),
     fault("lighting/taps.wgsl", "vec3f(weights.w), vec3f(weights.y)", "vec3f(weights.y), vec3f(weights.w)"),
     fault("lighting/taps.wgsl", "(lobes.single_scatter - dielectric)", "lobes.single_scatter"),
     fault("lighting/reflection_draft.wgsl", "taps_texel(2.0, plane).x", "one.w"),
@@ -296,7 +299,8 @@ const IN_TIERS: &[Mutant] = &[
 ];
 
 /// Files whose faults [`IN_TIERS`] must show.
-const TIER_LIGHTING: [&str; 6] = [
+const TIER_LIGHTING: [&str; 7] = [
+    "lighting/shape_isotropic.wgsl",
     "lighting/sun.wgsl",
     "lighting/prefiltered.wgsl",
     "lighting/taps.wgsl",
@@ -329,7 +333,7 @@ const IN_LOBE_TIERS: &[Mutant] = &[
     fault("lighting/reflection_line_high.wgsl", "* end_tilt)", "/ end_tilt)"),
     fault("lighting/disney_smooth.wgsl", "lobes.n * lobes.NoV - lobes.v", "lobes.v - lobes.n * lobes.NoV"),
     fault("lighting/disney_smooth.wgsl", "to_environment * direction, 0.5", "to_environment * direction, 0.8"),
-    fault("lighting/disney_smooth.wgsl", "- mean;", ";"),
+    fault("lighting/disney_smooth.wgsl", "direction) * degree_2", "direction) * degree_1"),
     fault("lighting/disney_smooth.wgsl", "0.28 * r", "0.6 * r"),
     fault("lighting/disney_smooth.wgsl", "0.79 - 0.03 * r", "1.0"),
     fault("lighting/disney_lookups_draft.wgsl", "(0.539 + lobes.NoV)", "1.539"),
@@ -441,6 +445,6 @@ fn lobe_tiers_reject_every_planted_fault() {
 fn grazing_suns_reject_taps_that_read_the_mirror_level() {
     let gpu = gpu(Precision::Float);
     let tiers = grazing_tiers();
-    let files = ["lighting/taps.wgsl", "lighting/visible_facets.wgsl"];
+    let files = ["lighting/visible_facets.wgsl"];
     all_are_rejected(AT_GRAZING_SUNS, files.into_iter(), |mutant| tiers.rejecting(&gpu, &mutant.sources()));
 }

@@ -44,11 +44,6 @@ const GUARDS: &[(&str, &str, &str)] = &[
         "inverseSqrt(dot(half_vector, half_vector))",
     ),
     ("lighting/lobes.wgsl", "saturate(dot(lobes.n, l))", "dot(lobes.n, l)"),
-    (
-        "light/irradiance_sh.wgsl",
-        "max((linear + products + squares).xyz, vec3f(0.0))",
-        "(linear + products + squares).xyz",
-    ),
     ("surface/surface.wgsl", "saturate(base_color.xyz)", "base_color.xyz"),
     (
         "surface/surface.wgsl",

@@ -51,8 +51,12 @@ impl Maps {
 
 impl Sphere {
     pub(crate) fn new(material: Material, image: &EnvironmentImage) -> Self {
-        // Lobes of alpha 0.04 take cells of 0.7 degrees; wider ones larger cells.
-        let cell = if material.perceptual_roughness < 0.3 { 2 } else { 4 };
+        // Lobes of alpha 0.04 take cells of two texels, narrower ones the texels themselves.
+        let cell = match material.perceptual_roughness {
+            ..0.15 => 1,
+            ..0.3 => 2,
+            _ => 4,
+        };
         let environment = placed(image);
         let cells = cells(&environment, cell);
         let scene = Scene { environment: Some(environment), ..sphere_scene(material) };
@@ -231,10 +235,11 @@ impl Tiers {
         let sphere = |material| Sphere::new(material, &image);
         // Errors measured on llvmpipe, times 1.1. The smooth one shows how a sun is handed over from the mirror level.
         let spheres = vec![
-            ("smooth metal", sphere(metal(0.1)), [0.37; 3]),
-            ("metal", sphere(metal(0.2)), [0.049, 0.047, 0.047]),
-            ("rougher metal", sphere(metal(0.5)), [0.064, 0.032, 0.0166]),
-            ("dielectric", sphere(dielectric(0.6)), [0.124, 0.0294, 0.0196]),
+            ("smooth metal", sphere(metal(0.075)), [0.097; 3]),
+            ("metal", sphere(metal(0.1)), [0.0247; 3]),
+            ("rough metal", sphere(metal(0.2)), [0.0114, 0.0087, 0.0086]),
+            ("rougher metal", sphere(metal(0.5)), [0.0372, 0.0132, 0.0079]),
+            ("dielectric", sphere(dielectric(0.6)), [0.0578, 0.0195, 0.0119]),
         ];
         Self::new(&image, spheres)
     }
