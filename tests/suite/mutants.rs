@@ -274,8 +274,6 @@ const IN_TIERS: &[Mutant] = &[
     fault("lighting/sun.wgsl", "sun.xyz, sun.w,", "sun.xyz, 1e-9,"),
     fault("lighting/shape_isotropic.wgsl", "2.0 / (s * (s + x))", "1.0"),
     fault("lighting/shape_isotropic.wgsl", "spread / VoH", "spread"),
-    fault("lighting/shape_isotropic.wgsl", "(s - x) / (2.0", "(s - x) / (1.0"),
-    fault("lighting/sun.wgsl", "saturate(level_of(lobes.perceptual_roughness))", "1.0"),
     fault("lighting/prefiltered.wgsl", "LAST_LEVEL + 2.0 * log2", "LAST_LEVEL + log2"),
     fault("lighting/taps.wgsl", "stored.x * TAPS_SCALE + TAPS_BIAS", "TAPS_BIAS - stored.x * TAPS_SCALE"),
     fault("lighting/taps.wgsl", "stored.y * LAST_LEVEL", "stored.y * 7.0"),
