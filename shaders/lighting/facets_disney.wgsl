@@ -1,11 +1,3 @@
-// The facets of the specular lobe, and what share of the light from each reaches the viewer.
-struct Facets {
-    t: vec3f,
-    alpha_t: f32,
-    b: vec3f,
-    alpha_b: f32,
-}
-
 fn facets_of(lobes: Lobes) -> Facets {
     return Facets(lobes.t, lobes.alpha_x, lobes.b, lobes.alpha_y);
 }

@@ -2,6 +2,14 @@
 #import "math/vectors.wgsl"
 #import <facets>
 
+// The facets of a specular lobe. The slot says which, and what share of the light from each reaches the viewer.
+struct Facets {
+    t: vec3f,
+    alpha_t: f32,
+    b: vec3f,
+    alpha_b: f32,
+}
+
 // Taps of a lobe that may be longer than wide. Stretched by the alphas, what a viewer sees of GGX facets is a cap of
 // directions, even over its area (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps"). The taps
 // lie on the line through its middle that becomes the longest axis of the lobe.

@@ -38,6 +38,8 @@ pub const TILES: usize = 12;
 
 /// Above, taps mix with the mirror image, all to the same share, and are placed as at level 1.
 const FITTED_ROWS: Range<usize> = 4..ROWS;
+/// Where the tiles of one, two and three taps begin.
+const FIRST_TILES: [usize; 3] = [0, 3, 7];
 const CHANNELS: usize = 4;
 const LAST_LEVEL: f64 = 8.0;
 /// What [`check`] lets a search gain, in shares of the variance of what is seen. Smoothness costs that much in places.
@@ -96,17 +98,9 @@ fn entry(set: &[Shared], row: usize, column: usize) -> Shared {
     entry
 }
 
-/// The set of taps that a tile belongs to, and which of its tiles it is.
-fn tile_of_set(tile: usize) -> (usize, usize) {
-    match tile {
-        0..3 => (0, tile),
-        3..7 => (1, tile - 3),
-        _ => (2, tile - 7),
-    }
-}
-
 fn texel(tile: usize, sets: &[Shared; 3]) -> [f64; CHANNELS] {
-    let (set, tile) = tile_of_set(tile);
+    let set = FIRST_TILES.partition_point(|first| *first <= tile) - 1;
+    let tile = tile - FIRST_TILES[set];
     let Shared { taps, weights: [metal, dielectric] } = &sets[set];
     let count = taps.len();
     let part = |weight: f64| weight / 4.0 + 0.5;
@@ -130,8 +124,8 @@ fn stored(values: &[u16], row: usize, column: usize) -> [Shared; 3] {
         level: level * LAST_LEVEL,
         spread: (spread - 0.5) * 2.0 * PLACE_MAX,
     };
-    [0, 3, 7].map(|first| {
-        let count = [0, 3, 7].iter().position(|&tile| tile == first).unwrap_or_default() + 1;
+    [1, 2, 3].map(|count| {
+        let first = FIRST_TILES[count - 1];
         let texels: Vec<_> = (first..first + count).map(texel).collect();
         let parts = texel(first + count).map(|part| (part - 0.5) * 4.0);
         let metal = texels.iter().map(|texel| texel[3]).chain([parts[0], parts[1]]).collect();

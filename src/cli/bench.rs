@@ -139,7 +139,7 @@ fn measure(
         basis,
         picture_truth: TruthReport::new(picture.samples, &picture.error(&stage.radiance(&shots[0], None)?)),
         shading_truth: TruthReport::new(light.truth.samples, &light.error(base, progress)?),
-        terms: light.terms(base, has_environment(scene), progress)?,
+        terms: light.terms(base, scene.lit_environment().is_some(), progress)?,
         display: display(&mut stage, &shots[0], &picture)?,
         rows: rows((&mut stage, &picture), &mut light, shots.iter().zip(&times), (basis, progress))?,
         warnings,
@@ -155,7 +155,7 @@ fn shots(
 ) -> Result<(Shot, Vec<Shot>, Vec<String>), CliError> {
     let first = stage.shot(base, view, progress)?;
     let (mut others, mut warnings) = (Vec::new(), Vec::new());
-    for setting in settings::settings(base, has_environment(scene)).into_iter().skip(1) {
+    for setting in settings::settings(base, scene.lit_environment().is_some()).into_iter().skip(1) {
         match stage.shot(setting, view, progress) {
             Ok(shot) => others.push(shot),
             Err(error) => warnings.push(format!("{setting} is left out: {error}")),
@@ -182,10 +182,6 @@ fn rows<'t>(
         rows.push(Row::new(&shot.setting, times, ratio, (&errors.0, &errors.1), flip_mean));
     }
     Ok(rows)
-}
-
-pub(super) fn has_environment(scene: &Scene) -> bool {
-    scene.environment.as_ref().is_some_and(|environment| environment.intensity > 0.0)
 }
 
 /// The median over rounds of a setting's time over the base's in the same round.

@@ -105,7 +105,7 @@ pub(super) fn bake_maps(
     progress: &dyn Progress,
 ) -> Option<BakedEnvironment> {
     let options = BakeOptions { suns: quality.parts_suns(), ..Default::default() };
-    let image = &scene.environment.as_ref().filter(|environment| environment.intensity > 0.0)?.image;
+    let image = &scene.lit_environment()?.image;
     let without = |cache| BakedEnvironment { maps: environment::bake(image, &options, progress), cache };
     Some(match EnvironmentCache::of_user() {
         _ if cache.no_cache => without(CacheUse::Off),

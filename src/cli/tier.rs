@@ -1,6 +1,6 @@
 //! `--max-error` and `--max-ms`: the tier that a scene and a view ask for, measured on the spot.
 
-use super::bench::{Basis, Light, Setting, Stage, Truth, TruthOptions, has_environment, median_ms, with_bare_textures};
+use super::bench::{Basis, Light, Setting, Stage, Truth, TruthOptions, median_ms, with_bare_textures};
 use super::error::CliError;
 use super::truth::parse_error;
 use crate::capture::CaptureOptions;
@@ -73,7 +73,8 @@ impl TierArgs {
         options: CaptureOptions,
         (progress, warnings): (&dyn Progress, &mut Vec<String>),
     ) -> Result<(Quality, TierStats), CliError> {
-        let tiers: Vec<Quality> = if has_environment(scene) { Quality::ALL.into() } else { vec![view.quality] };
+        let tiers: Vec<Quality> =
+            if scene.lit_environment().is_some() { Quality::ALL.into() } else { vec![view.quality] };
         let settings: Vec<Setting> =
             tiers.iter().map(|&quality| Setting::new(quality, options.samples, options.precision)).collect();
         let mut candidates = times(gpu, scene, view, &settings, progress)?;

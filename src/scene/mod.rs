@@ -129,6 +129,11 @@ impl Scene {
         self.world_transforms().into_iter().filter_map(place).collect()
     }
 
+    /// The environment, unless it is as dark as none.
+    pub fn lit_environment(&self) -> Option<&Environment> {
+        self.environment.as_ref().filter(|environment| environment.intensity > 0.0)
+    }
+
     /// Every light of the scene with its place and direction in the world.
     pub fn lights_in_world(&self) -> Vec<LightInWorld> {
         let place = |(node, world_from_node): (usize, DMat4)| {

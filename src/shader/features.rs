@@ -41,7 +41,7 @@ impl SceneFeatures {
         Self {
             suns: false,
             punctual: scene.lights_in_world().iter().any(|light| light.intensity != glam::DVec3::ZERO),
-            environment: scene.environment.as_ref().is_some_and(|environment| environment.intensity > 0.0),
+            environment: scene.lit_environment().is_some(),
             fresnel_tail: scene
                 .materials
                 .iter()

@@ -30,17 +30,6 @@ fn grey(base_color: f32, metallic: f32, perceptual_roughness: f32, disney: Disne
     Material { base_color, metallic, perceptual_roughness, disney: Some(disney), ..Default::default() }
 }
 
-const NEUTRAL: Disney = Disney {
-    subsurface: 0.0,
-    specular: 0.5,
-    specular_tint: 0.0,
-    anisotropic: 0.0,
-    sheen: 0.0,
-    sheen_tint: 0.0,
-    clearcoat: 0.0,
-    clearcoat_gloss: 1.0,
-};
-
 /// A material, and what it is without the lobe in question where it has others too.
 type Lobe = (String, Material, Option<Material>);
 
@@ -49,13 +38,13 @@ fn stretched_lobes() -> Vec<Lobe> {
     for (strength, anisotropic) in [(0.3, 0.0), (0.6, 0.5), (0.9, 0.9)] {
         for r in [0.2, 0.4, 0.6, 0.8] {
             lobes.push((format!("metal of strength {strength}, r {r}"), brushed(1.0, r, strength), None));
-            let disney = grey(1.0, 1.0, r, Disney { anisotropic, ..NEUTRAL });
+            let disney = grey(1.0, 1.0, r, Disney { anisotropic, ..Disney::default() });
             lobes.push((format!("disney metal, anisotropic {anisotropic}, r {r}"), disney, None));
         }
     }
     for r in [0.2, 0.6] {
         lobes.push((format!("dielectric of strength 0.6, r {r}"), brushed(0.0, r, 0.6), None));
-        lobes.push((format!("disney dielectric, r {r}"), grey(0.0, 0.0, r, NEUTRAL), None));
+        lobes.push((format!("disney dielectric, r {r}"), grey(0.0, 0.0, r, Disney::default()), None));
     }
     lobes
 }
@@ -64,17 +53,17 @@ fn other_lobes() -> Vec<Lobe> {
     let mut lobes = Vec::new();
     for r in [0.2, 0.6, 1.0] {
         for (name, subsurface) in [("diffuse", 0.0), ("subsurface", 1.0)] {
-            let material = grey(1.0, 0.0, r, Disney { subsurface, ..NEUTRAL });
-            lobes.push((format!("disney {name}, r {r}"), material, Some(grey(0.0, 0.0, r, NEUTRAL))));
+            let material = grey(1.0, 0.0, r, Disney { subsurface, ..Disney::default() });
+            lobes.push((format!("disney {name}, r {r}"), material, Some(grey(0.0, 0.0, r, Disney::default()))));
         }
     }
-    let black = || Some(grey(0.0, 0.0, 0.2, NEUTRAL));
-    lobes.push(("disney sheen".into(), grey(0.0, 0.0, 0.2, Disney { sheen: 1.0, ..NEUTRAL }), black()));
+    let black = || Some(grey(0.0, 0.0, 0.2, Disney::default()));
+    lobes.push(("disney sheen".into(), grey(0.0, 0.0, 0.2, Disney { sheen: 1.0, ..Disney::default() }), black()));
     for clearcoat_gloss in [0.0, 0.5, 0.9] {
-        let coated = Disney { clearcoat: 1.0, clearcoat_gloss, ..NEUTRAL };
+        let coated = Disney { clearcoat: 1.0, clearcoat_gloss, ..Disney::default() };
         lobes.push((format!("disney clearcoat, gloss {clearcoat_gloss}"), grey(0.0, 0.0, 0.2, coated), black()));
     }
-    lobes.push(("disney plastic".into(), grey(0.8, 0.0, 0.4, NEUTRAL), None));
+    lobes.push(("disney plastic".into(), grey(0.8, 0.0, 0.4, Disney::default()), None));
     lobes.push(("disney everything".into(), everything(), None));
     lobes
 }
@@ -88,7 +77,7 @@ fn everything() -> Material {
         sheen: 0.7,
         clearcoat: 1.0,
         clearcoat_gloss: 0.2,
-        ..NEUTRAL
+        ..Disney::default()
     };
     grey(0.8, 0.4, 0.5, disney)
 }
@@ -154,23 +143,31 @@ pub(crate) fn lobe_tiers() -> Tiers {
     let image = windows();
     assert!(sun::extract(&image).suns.is_empty());
     let whole = |material| Sphere::new(material, &image);
-    let lobe = |disney, r| Sphere::of_lobe(grey(1.0, 0.0, r, disney), grey(0.0, 0.0, r, NEUTRAL), &image);
-    let black = grey(0.0, 0.0, 0.2, NEUTRAL);
+    let lobe = |disney, r| Sphere::of_lobe(grey(1.0, 0.0, r, disney), grey(0.0, 0.0, r, Disney::default()), &image);
+    let black = grey(0.0, 0.0, 0.2, Disney::default());
     let extra = |disney| Sphere::of_lobe(grey(0.0, 0.0, 0.2, disney), black.clone(), &image);
     // Errors measured on llvmpipe, times 1.05.
     let spheres = vec![
         ("brushed metal", whole(brushed(1.0, 0.3, 0.5)), [0.276, 0.123, 0.083]),
         ("brushed dielectric", whole(brushed(0.0, 0.5, 0.4)), [0.535, 0.291, 0.219]),
-        ("disney metal", whole(grey(1.0, 1.0, 0.4, Disney { anisotropic: 0.7, ..NEUTRAL })), [0.186, 0.048, 0.048]),
+        (
+            "disney metal",
+            whole(grey(1.0, 1.0, 0.4, Disney { anisotropic: 0.7, ..Disney::default() })),
+            [0.186, 0.048, 0.048],
+        ),
         (
             "disney dielectric",
-            whole(grey(0.0, 0.0, 0.6, Disney { anisotropic: 0.3, ..NEUTRAL })),
+            whole(grey(0.0, 0.0, 0.6, Disney { anisotropic: 0.3, ..Disney::default() })),
             [0.398, 0.186, 0.186],
         ),
-        ("subsurface", lobe(Disney { subsurface: 1.0, ..NEUTRAL }, 0.7), [0.057; 3]),
-        ("diffuse", lobe(NEUTRAL, 1.0), [0.031; 3]),
-        ("sheen", extra(Disney { sheen: 1.0, ..NEUTRAL }), [0.108; 3]),
-        ("clearcoat", extra(Disney { clearcoat: 1.0, clearcoat_gloss: 0.4, ..NEUTRAL }), [0.175, 0.135, 0.135]),
+        ("subsurface", lobe(Disney { subsurface: 1.0, ..Disney::default() }, 0.7), [0.057; 3]),
+        ("diffuse", lobe(Disney::default(), 1.0), [0.031; 3]),
+        ("sheen", extra(Disney { sheen: 1.0, ..Disney::default() }), [0.108; 3]),
+        (
+            "clearcoat",
+            extra(Disney { clearcoat: 1.0, clearcoat_gloss: 0.4, ..Disney::default() }),
+            [0.175, 0.135, 0.135],
+        ),
     ];
     Tiers::new(&image, spheres)
 }
@@ -204,7 +201,9 @@ fn in_a_furnace_all_tiers_are_the_same() {
     let maps = Maps::new(&environment.image);
     let mut worst: f32 = 0.0;
     let lobes = [0.0, 0.4, 0.9].map(|strength| brushed(1.0, 0.4, strength));
-    for material in lobes.into_iter().chain([brushed(0.0, 0.1, 0.7), everything(), grey(1.0, 1.0, 0.9, NEUTRAL)]) {
+    for material in
+        lobes.into_iter().chain([brushed(0.0, 0.1, 0.7), everything(), grey(1.0, 1.0, 0.9, Disney::default())])
+    {
         let mut scene = sphere_scene(material);
         scene.environment = Some(environment.clone());
         let draw = |quality| {

@@ -3,7 +3,7 @@
 
 use super::kernels::Kernels;
 use super::lobe::{Lobe, PLACE_MAX, Tap};
-use super::{COLUMNS, FITTED_ROWS, Shared, level_of_row, nov_of_column};
+use super::{COLUMNS, FITTED_ROWS, LAST_LEVEL, Shared, level_of_row, nov_of_column};
 use crate::math::simplex::minimize;
 use crate::reference::sampling::PixelSampler;
 use crate::scene::EnvironmentMaps;
@@ -145,7 +145,7 @@ fn cost(lobe: &Lobe, level: f64, scale: f64, variables: &[f64]) -> f64 {
 
 /// The nearest taps that the table can hold. Those of level 1 are next to the mirror image and keep off it.
 fn held(level: f64, variables: &[f64]) -> Vec<Tap> {
-    let widest = if level > 1.0 { 8.0 } else { 1.0 };
+    let widest = if level > 1.0 { LAST_LEVEL } else { 1.0 };
     let held = |tap: Tap| Tap {
         place: tap.place.clamp(-PLACE_MAX, PLACE_MAX),
         level: tap.level.clamp(1.0, widest),

@@ -61,8 +61,10 @@ impl<'a> Stage<'a> {
     }
 
     fn upload(&self, (suns, max_side): MapsKey, progress: &dyn Progress) -> Result<GpuScene, CaptureError> {
-        let environment = self.scene.environment.as_ref().filter(|environment| environment.intensity > 0.0);
-        let maps = environment.map(|e| environment::bake(&e.image, &BakeOptions { suns, max_side }, progress));
+        let maps = self
+            .scene
+            .lit_environment()
+            .map(|e| environment::bake(&e.image, &BakeOptions { suns, max_side }, progress));
         Ok(self.renderer.upload(&self.gpu.device, &self.gpu.queue, self.scene, maps.as_ref())?)
     }
 

@@ -76,7 +76,7 @@ fn terms_of(scene: &Scene) -> Vec<Term> {
         || scene.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| primitive.normals.is_none());
     let emits = scene.materials.iter().any(|material| material.emissive_nits != Vec3::ZERO) || is_unlit;
     let lights = scene.lights_in_world().iter().any(|light| light.intensity != glam::DVec3::ZERO);
-    let environment = scene.environment.as_ref().is_some_and(|environment| environment.intensity > 0.0);
+    let environment = scene.lit_environment().is_some();
     let is_there = |term: &Term| match term {
         Term::Emission => emits || !(lights || environment),
         term if term.is_direct() => lights,
