@@ -1,12 +1,14 @@
 //! Frames without a window: our own device and targets, and the picture back in memory.
 
+use crate::frame::RenderPath;
 use crate::gpu::formats::{self, Precision};
 use crate::gpu::{Gpu, GpuError, Readback, read_texel, read_texture};
 use crate::gpu_scene::GpuScene;
 use crate::passes::ForwardTarget;
-use crate::renderer::{FrameStats, RadianceTarget, RenderError, Renderer};
+use crate::renderer::{FrameStats, RadianceTarget, RenderError, Renderer, SurfaceTarget};
 use crate::scene::{RadianceImage, View};
 use glam::{UVec2, Vec4};
+use std::sync::OnceLock;
 
 /// Why there is no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -38,7 +40,12 @@ impl Default for CaptureOptions {
 #[derive(Debug)]
 pub struct CaptureTarget {
     options: CaptureOptions,
-    multisampled: Option<wgpu::TextureView>,
+    size: wgpu::Extent3d,
+    /// Of the forward path with several samples.
+    multisampled: OnceLock<wgpu::TextureView>,
+    /// Of the deferred path.
+    visibility: OnceLock<wgpu::TextureView>,
+    covered: OnceLock<wgpu::TextureView>,
     depth: wgpu::TextureView,
     radiance: wgpu::Texture,
     display: wgpu::Texture,
@@ -50,28 +57,43 @@ impl CaptureTarget {
         let format = precision.hdr_format();
         check_samples(gpu, format, samples)?;
         let size = wgpu::Extent3d { width: view.size_px.x, height: view.size_px.y, depth_or_array_layers: 1 };
-        let texture = |label, format, sample_count, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size,
-                mip_level_count: 1,
-                sample_count,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let readable = attachment | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
-        let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
+        let depth = texture(gpu, size, ("depth", formats::DEPTH, samples), attachment);
         Ok(Self {
             options,
-            multisampled: (samples > 1).then(|| view(texture("multisampled radiance", format, samples, attachment))),
-            depth: view(texture("depth", formats::DEPTH, samples, attachment)),
-            radiance: texture("radiance", format, 1, readable),
-            display: texture("display", formats::CAPTURED_DISPLAY, 1, readable),
+            size,
+            multisampled: OnceLock::new(),
+            visibility: OnceLock::new(),
+            covered: OnceLock::new(),
+            depth: depth.create_view(&Default::default()),
+            radiance: texture(gpu, size, ("radiance", format, 1), readable),
+            display: texture(gpu, size, ("display", formats::CAPTURED_DISPLAY, 1), readable),
         })
+    }
+
+    /// What surfaces are drawn into, of which only the path that is taken has textures.
+    fn surfaces<'a>(&'a self, gpu: &Gpu, path: RenderPath, radiance: &'a wgpu::TextureView) -> SurfaceTarget<'a> {
+        let CaptureOptions { samples, precision } = self.options;
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let view = |what, usage| texture(gpu, self.size, what, usage).create_view(&Default::default());
+        match path {
+            RenderPath::Forward if samples == 1 => SurfaceTarget::Forward { color: radiance, resolve: None },
+            RenderPath::Forward => {
+                let what = ("multisampled radiance", precision.hdr_format(), samples);
+                let color = self.multisampled.get_or_init(|| view(what, attachment));
+                SurfaceTarget::Forward { color, resolve: Some(radiance) }
+            }
+            RenderPath::Deferred => {
+                let read = attachment | wgpu::TextureUsages::TEXTURE_BINDING;
+                let visibility = || view(("visibility", formats::VISIBILITY, samples), read);
+                SurfaceTarget::Deferred {
+                    visibility: self.visibility.get_or_init(visibility),
+                    covered: self.covered.get_or_init(|| view(("covered", formats::DEPTH, 1), attachment)),
+                    color: radiance,
+                }
+            }
+        }
     }
 
     pub fn forward_target(&self) -> ForwardTarget {
@@ -165,12 +187,11 @@ fn record_part(
     (display, pixel): (bool, Option<UVec2>),
 ) -> Result<FrameStats, CaptureError> {
     let radiance = target.radiance.create_view(&Default::default());
-    let (color, resolve) = match &target.multisampled {
-        Some(multisampled) => (multisampled, Some(&radiance)),
-        None => (&radiance, None),
-    };
     let ForwardTarget { format, samples } = target.forward_target();
-    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth, pixel };
+    // One pixel is not worth a pass over all.
+    let path = if pixel.is_some() { RenderPath::Forward } else { renderer.path(scene, view, target.forward_target()) };
+    let surfaces = target.surfaces(gpu, path, &radiance);
+    let attachments = RadianceTarget { format, samples, surfaces, depth: &target.depth, pixel };
     let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, encoder, scene, view, &attachments)?;
     if display {
         let display = target.display.create_view(&Default::default());
@@ -216,6 +237,24 @@ impl PendingFrame {
             display,
         })
     }
+}
+
+fn texture(
+    gpu: &Gpu,
+    size: wgpu::Extent3d,
+    (label, format, sample_count): (&str, wgpu::TextureFormat, u32),
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size,
+        mip_level_count: 1,
+        sample_count,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
 }
 
 fn check_samples(gpu: &Gpu, format: wgpu::TextureFormat, samples: u32) -> Result<(), CaptureError> {

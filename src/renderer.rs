@@ -4,11 +4,14 @@
 //! caller's encoder.
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
-use crate::frame::{FramePlan, plan};
-use crate::gpu::formats;
+use crate::frame::{FramePlan, RenderPath, are_small, plan};
+use crate::gpu::formats::{self, Precision};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
 use crate::math::color::linear_from_srgb;
-use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
+use crate::passes::{
+    BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
+    ForwardPipelines, ForwardTarget, draw,
+};
 use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
 use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
@@ -25,6 +28,20 @@ pub enum RenderError {
     Shader(#[from] ShaderError),
     #[error("the picture is {width} x {height} pixels; both must be between 1 and {allowed}")]
     Size { width: u32, height: u32, allowed: u32 },
+    #[error("this frame cannot be shaded in a pass of its own; Renderer::path says which can")]
+    NotDeferrable,
+}
+
+/// Which paths a renderer may take from triangles to radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PathChoice {
+    /// Always forward: what an engine expects of a pass of its own.
+    #[default]
+    Forward,
+    /// Deferred where it can be and triangles are small; measured to be faster on software drivers.
+    Faster,
+    /// Deferred wherever it can be.
+    Deferred,
 }
 
 /// Where the radiance of a frame goes. All views have the size of the [`View`].
@@ -32,19 +49,36 @@ pub enum RenderError {
 pub struct RadianceTarget<'a> {
     pub format: wgpu::TextureFormat,
     pub samples: u32,
-    /// Multisampled when `samples > 1`.
-    pub color: &'a wgpu::TextureView,
-    /// Given exactly when `samples > 1`.
-    pub resolve: Option<&'a wgpu::TextureView>,
+    pub surfaces: SurfaceTarget<'a>,
     /// In [`formats::DEPTH`], with the same number of samples.
     pub depth: &'a wgpu::TextureView,
     /// The only pixel that is drawn, from the top left; inside of the picture. `None` draws all.
     pub pixel: Option<UVec2>,
 }
 
+/// What surfaces are drawn into on the path of a frame ([`Renderer::path`]).
+#[derive(Debug, Clone, Copy)]
+pub enum SurfaceTarget<'a> {
+    Forward {
+        /// Multisampled when `samples > 1`.
+        color: &'a wgpu::TextureView,
+        /// Given exactly when `samples > 1`.
+        resolve: Option<&'a wgpu::TextureView>,
+    },
+    Deferred {
+        /// In [`formats::VISIBILITY`], with as many samples as the depth, to be read by shaders.
+        visibility: &'a wgpu::TextureView,
+        /// In [`formats::DEPTH`], one sample a pixel.
+        covered: &'a wgpu::TextureView,
+        /// One sample a pixel.
+        color: &'a wgpu::TextureView,
+    },
+}
+
 /// What a recorded frame consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FrameStats {
+    pub path: RenderPath,
     pub draws: u32,
     pub triangles: u64,
     /// Names of the distinct forward pipelines, sorted.
@@ -56,7 +90,10 @@ pub struct FrameStats {
 pub struct Renderer {
     sources: ShaderSources,
     shared: SharedTextures,
+    path: PathChoice,
+    blends_float: bool,
     forward: ForwardPipelines,
+    deferred: DeferredPipelines,
     background: BackgroundPipeline,
     display: DisplayPipelines,
 }
@@ -71,10 +108,37 @@ impl Renderer {
         Self {
             sources,
             shared: shared_textures(device, queue),
+            path: PathChoice::default(),
+            blends_float: device.features().contains(wgpu::Features::FLOAT32_BLENDABLE),
             forward: ForwardPipelines::default(),
+            deferred: DeferredPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
         }
+    }
+
+    /// With other paths than the forward one, for scenes that are uploaded from now on. Devices without
+    /// `PRIMITIVE_INDEX` stay with that.
+    pub fn with_paths(self, path: PathChoice) -> Self {
+        Self { path, ..self }
+    }
+
+    /// The same for frames from now on. Scenes that were uploaded for the forward path alone stay on it.
+    pub fn set_paths(&mut self, path: PathChoice) {
+        self.path = path;
+    }
+
+    /// The path that a frame takes, and so what its [`RadianceTarget`] needs.
+    pub fn path(&self, scene: &GpuScene, view: &View, target: ForwardTarget) -> RenderPath {
+        let blends = target.format != Precision::Float.hdr_format() || self.blends_float;
+        // A channel asks for neighbours in the picture.
+        let can = scene.pulled.is_some() && view.channel.is_none() && blends;
+        let is_deferred = match self.path {
+            PathChoice::Forward => false,
+            PathChoice::Faster => can && are_small(scene.triangles(), &scene.bounds_in_world, view, target.samples),
+            PathChoice::Deferred => can,
+        };
+        if is_deferred { RenderPath::Deferred } else { RenderPath::Forward }
     }
 
     /// Uploads a scene. `maps` are baked from its environment (`bake::environment`) and needed when it has one.
@@ -85,10 +149,14 @@ impl Renderer {
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        Ok(GpuScene::new(device, queue, scene, maps, &table(&disney::TABLE))?)
+        let mut uploaded = GpuScene::new(device, queue, scene, maps, &table(&disney::TABLE))?;
+        if self.path != PathChoice::Forward && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
+            uploaded.pull(device, queue, scene);
+        }
+        Ok(uploaded)
     }
 
-    /// Makes the pipelines that this view needs, so that [`Self::encode_radiance`] compiles nothing.
+    /// Makes the pipelines that this view needs, so that [`Self::encode_radiance`] compiles little.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -97,6 +165,9 @@ impl Renderer {
         target: ForwardTarget,
     ) -> Result<FramePlan, RenderError> {
         let plan = plan(&scene.drawables, scene.features, view);
+        if self.path(scene, view, target) == RenderPath::Deferred {
+            return Ok(plan);
+        }
         self.forward.prepare(device, &self.sources, scene, &plan, target)?;
         Ok(plan)
     }
@@ -114,19 +185,7 @@ impl Renderer {
         check_size(device, view)?;
         let forward_target = ForwardTarget { format: target.format, samples: target.samples };
         let plan = self.prepare(device, scene, view, forward_target)?;
-        let panorama = match (&mut scene.environment, plan.panorama) {
-            (Some(environment), true) => {
-                let panorama = environment.panorama(device, queue)?;
-                let uniform = background_uniform(
-                    &view.camera,
-                    view,
-                    environment.environment_from_world,
-                    environment.intensity * panorama.scale,
-                );
-                Some(self.background.prepare(device, &self.sources, forward_target, &panorama, &uniform)?)
-            }
-            _ => None,
-        };
+        let panorama = self.panorama(device, queue, scene, (view, &plan), target)?;
         let frame = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("frame"),
             contents: bytemuck::bytes_of(&frame_uniform(scene, view)),
@@ -139,16 +198,48 @@ impl Renderer {
         } else {
             0.0
         };
-        let mut pass = begin_forward(encoder, target, coverage);
+        if let SurfaceTarget::Deferred { visibility, covered, color: radiance } = target.surfaces {
+            let ForwardTarget { format, samples } = forward_target;
+            let (depth, size_px) = (target.depth, view.size_px);
+            let into = DeferredTarget { format, samples, visibility, depth, covered, radiance, size_px, coverage };
+            let (Some(geometry), None) = (&scene.pulled, target.pixel) else { return Err(RenderError::NotDeferrable) };
+            let pass = self.deferred.prepare(device, &self.sources, (scene, geometry), (&plan, view), &into)?;
+            pass.encode(encoder, scene, &frame_group, &into, |pass| {
+                if let Some(panorama) = &panorama {
+                    panorama.draw(pass, true);
+                }
+            });
+            return Ok(FrameStats { path: RenderPath::Deferred, ..frame_stats(scene, &plan) });
+        }
+        let mut pass = begin_forward(encoder, target, f64::from(coverage));
         if let Some(pixel) = target.pixel {
             pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
         }
         draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.opaque);
         if let Some(panorama) = &panorama {
-            panorama.draw(&mut pass);
+            panorama.draw(&mut pass, false);
         }
         draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.blended);
         Ok(frame_stats(scene, &plan))
+    }
+
+    /// The panorama of the frame, where it has one.
+    fn panorama(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &mut GpuScene,
+        (view, plan): (&View, &FramePlan),
+        target: &RadianceTarget<'_>,
+    ) -> Result<Option<BackgroundPass>, RenderError> {
+        let (Some(environment), true) = (&mut scene.environment, plan.panorama) else { return Ok(None) };
+        let panorama = environment.panorama(device, queue)?;
+        let radiance_scale = environment.intensity * panorama.scale;
+        let uniform = background_uniform(&view.camera, view, environment.environment_from_world, radiance_scale);
+        let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
+        let samples = if under { 1 } else { target.samples };
+        let into = BackgroundTarget { format: target.format, samples, under };
+        Ok(Some(self.background.prepare(device, &self.sources, into, &panorama, &uniform)?))
     }
 
     /// Records exposure, tone map and sRGB from `radiance` into `target`.
@@ -169,7 +260,7 @@ impl Renderer {
     /// Name and text of every WGSL module in use, sorted by name.
     pub fn wgsl_sources(&self) -> Vec<(String, String)> {
         let background = self.background.source().map(|text| ("background".to_owned(), text));
-        let all = self.forward.sources().chain(self.display.sources()).chain(background);
+        let all = self.forward.sources().chain(self.deferred.sources()).chain(self.display.sources()).chain(background);
         let mut sources: Vec<_> = all.map(|(name, text)| (name, text.to_owned())).collect();
         sources.sort();
         sources
@@ -265,15 +356,19 @@ fn begin_forward<'encoder>(
     target: &RadianceTarget<'_>,
     coverage: f64,
 ) -> wgpu::RenderPass<'encoder> {
+    let (color, resolve) = match target.surfaces {
+        SurfaceTarget::Forward { color, resolve } => (color, resolve),
+        SurfaceTarget::Deferred { color, .. } => (color, None),
+    };
     // The multisampled colour is not needed once it is resolved; depth is read by nobody yet.
-    let store = if target.resolve.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
+    let store = if resolve.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
     let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: coverage };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("forward"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: target.color,
+            view: color,
             depth_slice: None,
-            resolve_target: target.resolve,
+            resolve_target: resolve,
             ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
@@ -295,6 +390,7 @@ fn frame_stats(scene: &GpuScene, plan: &FramePlan) -> FrameStats {
         (indices / 3 * drawable.instances.len()) as u64
     };
     FrameStats {
+        path: RenderPath::Forward,
         draws: drawn.count() as u32,
         triangles: triangles.map(count).sum(),
         pipelines: plan.pipelines.iter().map(|key| key.features.to_string()).collect(),

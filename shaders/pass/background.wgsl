@@ -13,11 +13,12 @@ struct BackgroundOut {
     @location(0) direction: vec3f,
 }
 
-// Depth 0 is infinitely far away: only what no surface covers is drawn.
+// Depth 0 is infinitely far away: only what no surface covers is drawn. The second instance is for pixels that are shared,
+// which `pass/covered.wgsl` has at depth 1.
 @vertex
-fn vertex(@builtin(vertex_index) index: u32) -> BackgroundOut {
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) shared_pixels: u32) -> BackgroundOut {
     let ndc = fullscreen_position(index);
-    return BackgroundOut(vec4f(ndc, 0.0, 1.0), background.direction_from_ndc * vec3f(ndc, 1.0));
+    return BackgroundOut(vec4f(ndc, f32(shared_pixels), 1.0), background.direction_from_ndc * vec3f(ndc, 1.0));
 }
 
 // The panorama at infinity: u = 0.5 + atan2(z, x) / 2 pi, v = acos(y) / pi.

@@ -118,7 +118,7 @@ fn measure(
     let EffortArgs { frames, clock, truth_samples, truth_error } = args.effort;
     let basis = clock.unwrap_or_else(|| Basis::suiting(gpu));
     let capture = args.driver.capture_options();
-    let base = Setting::new(view.quality, capture.samples, capture.precision);
+    let base = Setting::new(view.quality, capture, args.driver.paths_on(gpu));
     let mut stage = Stage::new(gpu, scene);
     let (base_shot, others, warnings) = shots(&mut stage, base, (scene, view), progress)?;
     let shots: Vec<Shot> = std::iter::once(base_shot).chain(others).collect();

@@ -4,6 +4,7 @@ use super::error::CliError;
 use crate::capture::{CaptureError, CaptureOptions};
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
+use crate::renderer::PathChoice;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Renderer")]
@@ -14,6 +15,11 @@ pub(super) struct DriverArgs {
     /// Samples a pixel of the rasteriser.
     #[arg(long, value_name = "1|4", default_value_t = 4)]
     msaa: u32,
+    /// forward shades triangle by triangle. deferred finds out first what is seen and shades that, where it can (opaque
+    /// triangles); it differs at edges alone. auto takes deferred on software drivers where triangles are small, which
+    /// is faster there, and else forward.
+    #[arg(long, value_enum, default_value = "auto")]
+    path: PathArg,
     /// Precision of the radiance target, and of .exr files.
     #[arg(long, value_enum, default_value = "half")]
     precision: PrecisionArg,
@@ -32,6 +38,13 @@ enum RendererArg {
     Auto,
     Gpu,
     Reference,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum PathArg {
+    Auto,
+    Forward,
+    Deferred,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -69,6 +82,16 @@ impl DriverArgs {
 
     pub(super) fn capture_options(&self) -> CaptureOptions {
         CaptureOptions { samples: self.msaa, precision: self.precision() }
+    }
+
+    /// The paths that frames may take on a device.
+    pub(super) fn paths_on(&self, gpu: &Gpu) -> PathChoice {
+        let is_software = gpu.info.device_type == crate::wgpu::DeviceType::Cpu;
+        match self.path {
+            PathArg::Auto if is_software => PathChoice::Faster,
+            PathArg::Auto | PathArg::Forward => PathChoice::Forward,
+            PathArg::Deferred => PathChoice::Deferred,
+        }
     }
 
     /// The adapter that is asked for.

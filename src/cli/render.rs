@@ -142,7 +142,7 @@ fn choose_tier(
     (progress, warnings): (&StderrProgress, &mut Vec<String>),
 ) -> Result<Option<TierStats>, CliError> {
     let Some(gpu) = gpu.filter(|_| args.tier.is_asked()) else { return Ok(None) };
-    let options = args.driver.capture_options();
+    let options = (args.driver.capture_options(), args.driver.paths_on(gpu));
     let (quality, stats) = args.tier.choose(gpu, (scene, view), options, (progress, warnings))?;
     view.quality = quality;
     progress.finish();
@@ -177,7 +177,7 @@ fn draw(
     let baked = watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress));
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
-        let renderer = Renderer::new(device, queue);
+        let renderer = Renderer::new(device, queue).with_paths(args.driver.paths_on(gpu));
         let uploaded = renderer
             .upload(device, queue, scene, baked.as_ref().map(|baked| &baked.maps))
             .map_err(CaptureError::from)?;
@@ -219,6 +219,7 @@ fn draw(
         picture,
         adapter: Some(AdapterStats::of(gpu)),
         gpu: Some(GpuStats {
+            path: stats.path.name(),
             draws: stats.draws,
             triangles: stats.triangles,
             pipelines: stats.pipelines,

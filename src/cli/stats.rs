@@ -51,6 +51,8 @@ impl AdapterStats {
 
 #[derive(Debug, Serialize)]
 pub(super) struct GpuStats {
+    /// `forward` or `deferred`.
+    pub(super) path: &'static str,
     pub(super) draws: u32,
     pub(super) triangles: u64,
     /// The features of each distinct forward pipeline.

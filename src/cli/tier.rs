@@ -6,6 +6,7 @@ use super::truth::parse_error;
 use crate::capture::CaptureOptions;
 use crate::gpu::Gpu;
 use crate::progress::Progress;
+use crate::renderer::PathChoice;
 use crate::scene::{Quality, Scene, View};
 use serde::Serialize;
 
@@ -70,13 +71,12 @@ impl TierArgs {
         &self,
         gpu: &Gpu,
         (scene, view): (&Scene, &View),
-        options: CaptureOptions,
+        (options, paths): (CaptureOptions, PathChoice),
         (progress, warnings): (&dyn Progress, &mut Vec<String>),
     ) -> Result<(Quality, TierStats), CliError> {
         let tiers: Vec<Quality> =
             if scene.lit_environment().is_some() { Quality::ALL.into() } else { vec![view.quality] };
-        let settings: Vec<Setting> =
-            tiers.iter().map(|&quality| Setting::new(quality, options.samples, options.precision)).collect();
+        let settings: Vec<Setting> = tiers.iter().map(|&quality| Setting::new(quality, options, paths)).collect();
         let mut candidates = times(gpu, scene, view, &settings, progress)?;
         let mut stats = TierStats {
             taken: "",

@@ -1,8 +1,8 @@
 //! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
 
 use crate::shader::{
-    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SceneFeatures, Shading, disney_binding,
-    material_texture_binding,
+    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING, SceneFeatures, Shading,
+    disney_binding, material_texture_binding,
 };
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
 
@@ -64,6 +64,26 @@ pub fn background_entries() -> Vec<BindGroupLayoutEntry> {
     vec![buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform), texture(1, true), sampler(2)]
 }
 
+/// Group 1 of the visibility pass: the draw.
+pub fn visibility_entries() -> Vec<BindGroupLayoutEntry> {
+    vec![buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform)]
+}
+
+/// What the visibility pass has left, alone.
+pub fn covered_entries(multisampled: bool) -> Vec<BindGroupLayoutEntry> {
+    vec![whole_numbers(SEEN_SAMPLES_BINDING, multisampled)]
+}
+
+/// Group 2 of the deferred pass: the draw, vertices, triangles, and what the visibility pass has left.
+pub fn pulled_entries(multisampled: bool) -> Vec<BindGroupLayoutEntry> {
+    vec![
+        buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform),
+        texture(1, false),
+        whole_numbers(2, false),
+        whole_numbers(SEEN_SAMPLES_BINDING, multisampled),
+    ]
+}
+
 /// Scene radiance to display: uniform, texture.
 pub fn display_entries() -> Vec<BindGroupLayoutEntry> {
     vec![buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform), texture(1, false)]
@@ -89,6 +109,21 @@ pub fn display_layout(device: &Device) -> BindGroupLayout {
     layout(device, "display", &display_entries())
 }
 
+/// The layout of [`visibility_entries`].
+pub fn visibility_layout(device: &Device) -> BindGroupLayout {
+    layout(device, "visibility", &visibility_entries())
+}
+
+/// The layout of [`covered_entries`].
+pub fn covered_layout(device: &Device, multisampled: bool) -> BindGroupLayout {
+    layout(device, "covered", &covered_entries(multisampled))
+}
+
+/// The layout of [`pulled_entries`].
+pub fn pulled_layout(device: &Device, multisampled: bool) -> BindGroupLayout {
+    layout(device, "pulled", &pulled_entries(multisampled))
+}
+
 fn layout(device: &Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
 }
@@ -103,6 +138,15 @@ fn texture(binding: u32, filterable: bool) -> BindGroupLayoutEntry {
         sample_type: wgpu::TextureSampleType::Float { filterable },
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
+    };
+    BindGroupLayoutEntry { binding, visibility: ShaderStages::FRAGMENT, ty, count: None }
+}
+
+fn whole_numbers(binding: u32, multisampled: bool) -> BindGroupLayoutEntry {
+    let ty = BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Uint,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled,
     };
     BindGroupLayoutEntry { binding, visibility: ShaderStages::FRAGMENT, ty, count: None }
 }

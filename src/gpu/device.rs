@@ -51,7 +51,7 @@ pub fn usable_features(precision: Precision) -> wgpu::Features {
         }
     };
     let timestamps = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
-    float_target | timestamps | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM
+    float_target | timestamps | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM | wgpu::Features::PRIMITIVE_INDEX
 }
 
 impl Gpu {

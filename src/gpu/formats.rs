@@ -6,6 +6,12 @@ use wgpu::TextureFormat;
 
 /// Depth, reversed: 1 at the near plane, 0 at infinity.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+/// What the visibility pass leaves: four whole numbers a sample (wider ones cannot be multisampled).
+pub const VISIBILITY: TextureFormat = TextureFormat::Rgba16Uint;
+/// Attributes of vertices that a fragment shader fetches.
+pub const PULLED_VERTICES: TextureFormat = TextureFormat::Rgba32Float;
+/// Numbers of the vertices of a triangle that a fragment shader fetches.
+pub const PULLED_TRIANGLES: TextureFormat = TextureFormat::Rgba32Uint;
 /// Display values of a captured frame; the shader applies the sRGB transfer, so that all adapters round alike.
 pub const CAPTURED_DISPLAY: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Prefiltered environments and panoramas.

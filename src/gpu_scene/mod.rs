@@ -4,12 +4,13 @@ mod environment;
 mod geometry;
 mod materials;
 pub mod mips;
+mod pulled;
 mod tables;
 mod textures;
 
 use crate::frame::{Drawables, PlacedInstance};
 use crate::gpu::bindings::{self, frame_layout};
-use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
+use crate::scene::{Bounds, EnvironmentMaps, LightInWorld, LightKind, Scene, Topology};
 use crate::shader::{SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
@@ -18,6 +19,7 @@ use wgpu::util::DeviceExt;
 
 pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
+pub use pulled::PulledGeometry;
 pub use tables::Table;
 
 /// Why a scene cannot be put on this device.
@@ -47,6 +49,7 @@ pub struct GpuScene {
     pub bytes: UploadedBytes,
     /// Things that were drawn with less than was asked for.
     pub warnings: Vec<String>,
+    pub(crate) bounds_in_world: Bounds,
     /// Subtracted from every position before it becomes f32.
     pub(crate) origin_in_world: DVec3,
     pub(crate) light_count: u32,
@@ -54,6 +57,8 @@ pub struct GpuScene {
     pub(crate) indices: wgpu::Buffer,
     pub(crate) instances: wgpu::Buffer,
     pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
+    /// For shading in a pass of its own, where that was asked for and can be.
+    pub(crate) pulled: Option<PulledGeometry>,
     pub(crate) materials: materials::Materials,
     pub(crate) lights: Option<wgpu::Buffer>,
     pub(crate) environment: Option<GpuEnvironment>,
@@ -109,6 +114,7 @@ impl GpuScene {
                 environment: environment.as_ref().map_or(0, GpuEnvironment::bytes),
             },
             warnings,
+            bounds_in_world: bounds,
             origin_in_world,
             light_count: lights.len() as u32,
             instances: storage("instances", bytemuck::cast_slice(&instance_data)),
@@ -117,10 +123,30 @@ impl GpuScene {
             vertices: geometry.vertices,
             indices: geometry.indices,
             primitives: geometry.primitives,
+            pulled: None,
             materials,
             environment,
             frame_layout: frame_layout(device, features),
         })
+    }
+
+    /// Triangles of all draws.
+    pub(crate) fn triangles(&self) -> u64 {
+        let count = |drawable: &crate::frame::Drawable| {
+            let indices = self.primitives.get(&(drawable.mesh, drawable.primitive)).map_or(0, |p| p.indices.len());
+            (indices / 3 * drawable.instances.len()) as u64
+        };
+        let triangles = self.drawables.draws.iter().filter(|drawable| drawable.topology == Topology::Triangles);
+        triangles.map(count).sum()
+    }
+
+    /// Uploads the geometry of `scene`, of which this was made, once more, so that surfaces can be shaded in a pass of
+    /// their own. Does nothing where they cannot.
+    pub(crate) fn pull(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) {
+        if crate::frame::is_deferrable(&self.drawables) {
+            self.pulled = PulledGeometry::new(device, queue, scene, (&self.drawables, self.origin_in_world));
+            self.bytes.geometry += self.pulled.as_ref().map_or(0, PulledGeometry::bytes);
+        }
     }
 
     /// Group 0 of the forward pass, with the uniform of one view.

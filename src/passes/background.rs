@@ -1,13 +1,21 @@
 //! The panorama, drawn where no surface is.
 
-use super::ForwardTarget;
 use crate::gpu::bindings::background_layout;
-use crate::gpu::pipeline::{FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::{Panorama, entry};
 use crate::shader::types::BackgroundUniform;
 use crate::shader::{Composed, ShaderError, ShaderSources, background_module, create_module};
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
+
+/// What the panorama is drawn into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct BackgroundTarget {
+    pub format: wgpu::TextureFormat,
+    pub samples: u32,
+    /// Under what is there, by its coverage, and where the depth is the triangle's own; else behind what is nearer.
+    pub under: bool,
+}
 
 /// The pipeline of the panorama, for each target.
 #[derive(Debug)]
@@ -15,7 +23,7 @@ pub struct BackgroundPipeline {
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     module: Option<(Composed, wgpu::ShaderModule)>,
-    pipelines: HashMap<ForwardTarget, wgpu::RenderPipeline>,
+    pipelines: HashMap<BackgroundTarget, wgpu::RenderPipeline>,
 }
 
 /// What one view binds to see the panorama.
@@ -46,7 +54,7 @@ impl BackgroundPipeline {
         &mut self,
         device: &wgpu::Device,
         sources: &ShaderSources,
-        target: ForwardTarget,
+        target: BackgroundTarget,
         panorama: &Panorama,
         uniform: &BackgroundUniform,
     ) -> Result<BackgroundPass, ShaderError> {
@@ -72,7 +80,7 @@ impl BackgroundPipeline {
         &mut self,
         device: &wgpu::Device,
         sources: &ShaderSources,
-        target: ForwardTarget,
+        target: BackgroundTarget,
     ) -> Result<wgpu::RenderPipeline, ShaderError> {
         if let Some(pipeline) = self.pipelines.get(&target) {
             return Ok(pipeline.clone());
@@ -85,17 +93,28 @@ impl BackgroundPipeline {
                 self.module.insert((composed, module)).1.clone()
             }
         };
-        let into = FullscreenTarget { format: target.format, samples: target.samples, depth_tested: true };
-        let pipeline = fullscreen_pipeline(device, "background", &self.layout, &module, into);
+        let component = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::OneMinusDstAlpha,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let into = FullscreenTarget {
+            format: Some(target.format),
+            samples: target.samples,
+            depth: if target.under { FullscreenDepth::Equal } else { FullscreenDepth::Behind },
+            blend: target.under.then_some(wgpu::BlendState { color: component, alpha: component }),
+        };
+        let pipeline = fullscreen_pipeline(device, "background", &[Some(&self.layout)], &module, into);
         self.pipelines.insert(target, pipeline.clone());
         Ok(pipeline)
     }
 }
 
 impl BackgroundPass {
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+    /// Where nothing is; with `under`, also where something covers a part of the pixel.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, under: bool) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
-        pass.draw(0..3, 0..1);
+        pass.draw(0..3, 0..if under { 2 } else { 1 });
     }
 }

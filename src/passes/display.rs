@@ -1,7 +1,7 @@
 //! Scene radiance to display values: exposure, tone map, background colour, sRGB.
 
 use crate::gpu::bindings::display_layout;
-use crate::gpu::pipeline::{FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::entry;
 use crate::shader::types::DisplayUniform;
 use crate::shader::{Composed, DisplayFeatures, ShaderError, ShaderSources, create_module, display_module};
@@ -47,8 +47,9 @@ impl DisplayPipelines {
             None => {
                 let composed = display_module(sources, features)?;
                 let module = create_module(device, "display", &composed)?;
-                let into = FullscreenTarget { format, samples: 1, depth_tested: false };
-                let pipeline = fullscreen_pipeline(device, "display", &self.layout, &module, into);
+                let into =
+                    FullscreenTarget { format: Some(format), samples: 1, depth: FullscreenDepth::None, blend: None };
+                let pipeline = fullscreen_pipeline(device, "display", &[Some(&self.layout)], &module, into);
                 self.pipelines.insert((features, format), (composed, pipeline.clone()));
                 pipeline
             }

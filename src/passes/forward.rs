@@ -1,7 +1,7 @@
 //! Surfaces: every draw with the shader of its features.
 
 use crate::frame::{Draw, FramePlan, PipelineKey};
-use crate::gpu::pipeline::depth_state;
+use crate::gpu::pipeline::{depth_state, primitive_state};
 use crate::gpu_scene::GpuScene;
 use crate::scene::Topology;
 use crate::shader::{
@@ -139,7 +139,7 @@ fn create_pipeline(
             compilation_options: Default::default(),
             buffers: &buffers,
         },
-        primitive: primitive_state(key),
+        primitive: primitive_state(topology(key), key.mirrored, key.cull_back),
         depth_stencil: Some(depth_state(!blended)),
         multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
@@ -157,16 +157,11 @@ fn create_pipeline(
     })
 }
 
-fn primitive_state(key: &PipelineKey) -> wgpu::PrimitiveState {
-    wgpu::PrimitiveState {
-        topology: match key.features.topology {
-            Topology::Points => wgpu::PrimitiveTopology::PointList,
-            Topology::Lines => wgpu::PrimitiveTopology::LineList,
-            Topology::Triangles => wgpu::PrimitiveTopology::TriangleList,
-        },
-        front_face: if key.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
-        cull_mode: key.cull_back.then_some(wgpu::Face::Back),
-        ..Default::default()
+fn topology(key: &PipelineKey) -> wgpu::PrimitiveTopology {
+    match key.features.topology {
+        Topology::Points => wgpu::PrimitiveTopology::PointList,
+        Topology::Lines => wgpu::PrimitiveTopology::LineList,
+        Topology::Triangles => wgpu::PrimitiveTopology::TriangleList,
     }
 }
 

@@ -1,9 +1,11 @@
 //! The passes of a frame. Each is one function that records into what it is given; none knows another.
 
 mod background;
+mod deferred;
 mod display;
 mod forward;
 
-pub use background::{BackgroundPass, BackgroundPipeline};
+pub use background::{BackgroundPass, BackgroundPipeline, BackgroundTarget};
+pub use deferred::{DeferredPass, DeferredPipelines, DeferredTarget};
 pub use display::{DisplayPass, DisplayPipelines};
 pub use forward::{ForwardPipelines, ForwardTarget, draw};

@@ -39,10 +39,9 @@ pub fn attributes(vertex: &VertexFeatures) -> Vec<Attribute> {
 
 /// The `<interface>` slot: `VertexIn`, `VertexOut`, `vertex_out` and `vertex_color`.
 pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
-    let attributes = attributes(vertex);
     let fields = |first: &str| {
-        let numbered = attributes.iter().enumerate();
-        numbered.fold(String::new(), |mut text, (location, attribute)| {
+        let attributes = attributes(vertex).into_iter().enumerate();
+        attributes.fold(String::new(), |mut text, (location, attribute)| {
             let name = if location == 0 { first } else { &attribute.name };
             let _ = writeln!(text, "    @location({location}) {name}: {},", attribute.wgsl);
             text
@@ -54,14 +53,20 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
         fields("position"),
         fields("position_in_world")
     );
-    text.push_str(
-        "fn vertex_out(in: VertexIn) -> VertexOut {\n\
-         \x20   let instance = instances[in.instance];\n\
+    text.push_str(&vertex_functions(vertex, "instances[in.instance]"));
+    text
+}
+
+/// `vertex_out` and `vertex_color`, for whatever declares `VertexIn` and `VertexOut`; `instance` is what places the vertex.
+pub(super) fn vertex_functions(vertex: &VertexFeatures, instance: &str) -> String {
+    let mut text = format!(
+        "fn vertex_out(in: VertexIn) -> VertexOut {{\n\
+         \x20   let instance = {instance};\n\
          \x20   var out: VertexOut;\n\
          \x20   out.position_in_world = vec4f(in.position, 1.0) * instance.world_from_object;\n\
          \x20   out.position_in_clip = frame.clip_from_world * vec4f(out.position_in_world, 1.0);\n",
     );
-    for Attribute { name, .. } in attributes.iter().skip(1) {
+    for Attribute { name, .. } in attributes(vertex).iter().skip(1) {
         let value = match name.as_str() {
             "normal" => "normalize_or(instance.normal_from_object * in.normal, vec3f(0.0))".to_owned(),
             "tangent" => "vec4f(normalize_or(vec4f(in.tangent.xyz, 0.0) * instance.world_from_object, vec3f(0.0)), \
@@ -77,8 +82,17 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     text
 }
 
+/// How texels are looked up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gradients {
+    /// From the neighbours in the picture.
+    Implicit,
+    /// `uv_N_dx` and `uv_N_dy` of the vertex: what its coordinates change by to the next pixel.
+    Explicit,
+}
+
 /// The `<material>` slot: the uniform, and for every texture slot a function `NAME_texel` that is 1 without a texture.
-pub(super) fn material_interface(material: &MaterialFeatures) -> String {
+pub(super) fn material_interface(material: &MaterialFeatures, gradients: Gradients) -> String {
     let samplers = material.sampler_count();
     let mut text = format!("@group(1) @binding({MATERIAL_UNIFORM_BINDING}) var<uniform> material: MaterialUniform;\n");
     for sampler in 0..samplers {
@@ -103,15 +117,23 @@ pub(super) fn material_interface(material: &MaterialFeatures) -> String {
             None if slot == TextureSlot::Anisotropy => "vec4f(1.0, 0.5, 1.0, 1.0)".to_owned(),
             None => "vec4f(1.0)".to_owned(),
             Some(texture) => {
-                let uv = format!("v.uv_{}", texture.uv_set);
-                let row = 2 * slot as usize;
-                let uv = if texture.transformed {
-                    let dot = |row: usize| format!("dot(material.uv_transforms[{row}].xyz, vec3f({uv}, 1.0))");
+                let uv = |suffix: &str, w: &str| {
+                    let uv = format!("v.uv_{}{suffix}", texture.uv_set);
+                    if !texture.transformed {
+                        return uv;
+                    }
+                    let row = 2 * slot as usize;
+                    let dot = |row: usize| format!("dot(material.uv_transforms[{row}].xyz, vec3f({uv}, {w}))");
                     format!("vec2f({}, {})", dot(row), dot(row + 1))
-                } else {
-                    uv
                 };
-                format!("textureSample({name}_texture, material_sampler_{}, {uv})", texture.sampler)
+                let (at, sampler) = (uv("", "1.0"), texture.sampler);
+                match gradients {
+                    Gradients::Implicit => format!("textureSample({name}_texture, material_sampler_{sampler}, {at})"),
+                    Gradients::Explicit => {
+                        let (dx, dy) = (uv("_dx", "0.0"), uv("_dy", "0.0"));
+                        format!("textureSampleGrad({name}_texture, material_sampler_{sampler}, {at}, {dx}, {dy})")
+                    }
+                }
             }
         };
         let _ = writeln!(text, "\nfn {name}_texel(v: VertexOut) -> vec4f {{\n    return {value};\n}}");

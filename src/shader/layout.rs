@@ -17,6 +17,9 @@ macro_rules! rust_type {
     (vec4f) => {
         [f32; 4]
     };
+    (vec4u) => {
+        [u32; 4]
+    };
     (mat3x3f) => {
         [[f32; 4]; 3]
     };

@@ -10,6 +10,7 @@ mod features;
 mod interface;
 mod layout;
 mod modules;
+mod pulled;
 mod sources;
 pub mod types;
 
@@ -22,7 +23,11 @@ pub use features::{
 pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, disney_binding, material_texture_binding,
 };
-pub use modules::{DisplayFeatures, background_module, display_module, forward_module, forward_slots};
+pub use modules::{
+    DisplayFeatures, background_module, covered_module, deferred_module, display_module, forward_module, forward_slots,
+    visibility_module,
+};
+pub use pulled::{PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, texels_per_vertex};
 #[cfg(feature = "cli")]
 pub(crate) use sources::embedded;
 pub use sources::{SOURCES, ShaderSources};

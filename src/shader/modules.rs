@@ -2,13 +2,40 @@
 
 use super::compose::{Composed, ShaderError, Slot, Slots, compose};
 use super::features::{Alpha, ForwardFeatures, FresnelFeature, Shading};
+use super::interface::Gradients;
 use super::sources::ShaderSources;
-use super::{channels, interface, types};
+use super::{channels, interface, pulled, types};
 use crate::scene::{Components, Geometry, Quality, Term, TextureSlot, ToneMap};
 
 /// The forward pass of one kind of draw.
 pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
     compose(sources, "pass/forward.wgsl", &forward_slots(features))
+}
+
+/// The pass that shades what the visibility pass has seen of one kind of draw, by the shader that the forward pass has.
+pub fn deferred_module(
+    sources: &ShaderSources,
+    features: &ForwardFeatures,
+    samples: u32,
+) -> Result<Composed, ShaderError> {
+    let mut slots = forward_slots(features);
+    slots.insert("interface", Slot::Text(pulled::vertex_interface(&features.vertex)));
+    slots.insert("material", Slot::Text(interface::material_interface(&features.material, Gradients::Explicit)));
+    slots.insert("seen", Slot::Text(pulled::seen(samples, 2)));
+    compose(sources, "pass/deferred.wgsl", &slots)
+}
+
+/// What each sample of the picture shows, to be shaded later.
+pub fn visibility_module(sources: &ShaderSources) -> Result<Composed, ShaderError> {
+    // Before all declarations, which this slot begins.
+    let text = format!("enable primitive_index;\n\n{}", types::wgsl());
+    compose(sources, "pass/visibility.wgsl", &Slots::from([("types", Slot::Text(text))]))
+}
+
+/// Which draw has a pixel, as depth.
+pub fn covered_module(sources: &ShaderSources, samples: u32) -> Result<Composed, ShaderError> {
+    let slots = Slots::from([("types", Slot::Text(types::wgsl())), ("seen", Slot::Text(pulled::seen(samples, 0)))]);
+    compose(sources, "pass/covered.wgsl", &slots)
 }
 
 /// What fills the slots of the forward pass.
@@ -22,7 +49,7 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
     Slots::from([
         ("types", Slot::Text(types::wgsl())),
         ("interface", Slot::Text(interface::vertex_interface(vertex))),
-        ("material", Slot::Text(interface::material_interface(material))),
+        ("material", Slot::Text(interface::material_interface(material, Gradients::Implicit))),
         (
             "normal",
             match (material.shading.is_lit(), normal_mapped) {

@@ -144,6 +144,26 @@ gpu_struct! {
     }
 }
 
+gpu_struct! {
+    /// A draw whose pixels are shaded in a pass of their own, which fetches the vertices by itself.
+    pub struct PulledDraw {
+        /// Where its triangles and vertices begin, in texels.
+        first_triangle: u32,
+        first_vertex: u32,
+        /// Of the draw in its frame, from 1.
+        number: u32,
+        /// 1, or -1 where the transform mirrors: front faces are clockwise then.
+        front: f32,
+        /// Of its instance, as `Instance` has them.
+        world_from_object: mat3x4f,
+        normal_from_object: mat3x3f,
+        handedness: f32,
+        pad_0: f32,
+        /// What normalised device coordinates change by to the next pixel, to the right and down.
+        ndc_step: vec2f,
+    }
+}
+
 /// A struct's name, its WGSL declaration, the offsets of its fields, and its size.
 pub type Declaration = (&'static str, &'static str, &'static [(&'static str, usize)], usize);
 
@@ -156,6 +176,7 @@ pub const ALL: &[Declaration] = &[
     ("MaterialUniform", MaterialUniform::WGSL, MaterialUniform::FIELDS, size_of::<MaterialUniform>()),
     ("DisneyUniform", DisneyUniform::WGSL, DisneyUniform::FIELDS, size_of::<DisneyUniform>()),
     ("BackgroundUniform", BackgroundUniform::WGSL, BackgroundUniform::FIELDS, size_of::<BackgroundUniform>()),
+    ("PulledDraw", PulledDraw::WGSL, PulledDraw::FIELDS, size_of::<PulledDraw>()),
     ("DisplayUniform", DisplayUniform::WGSL, DisplayUniform::FIELDS, size_of::<DisplayUniform>()),
 ];
 

@@ -4,7 +4,10 @@ mod tree;
 
 use crate::shaders::{display_features, forward_features, term_features};
 use specula::proof;
-use specula::shader::{SOURCES, ShaderSources, background_module, display_module, forward_module};
+use specula::shader::{
+    SOURCES, ShaderSources, background_module, covered_module, deferred_module, display_module, forward_module,
+    visibility_module,
+};
 use std::collections::BTreeSet;
 use tree::{File, exists, files, names_after, read, words};
 
@@ -32,7 +35,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("gpu_scene", &["frame", "gpu", "math", "scene", "shader"]),
     ("passes", &["frame", "gpu", "gpu_scene", "math", "scene", "shader"]),
     ("renderer", &["bake", "frame", "gpu", "gpu_scene", "math", "passes", "scene", "shader"]),
-    ("capture", &["gpu", "gpu_scene", "math", "passes", "renderer", "scene"]),
+    ("capture", &["frame", "gpu", "gpu_scene", "math", "passes", "renderer", "scene"]),
     // What the shaders are held to: WGSL beside the truth, on a device.
     ("proof", &["bake", "gpu", "gpu_scene", "math", "progress", "reference", "renderer", "scene", "shader"]),
     // The program: everything.
@@ -172,6 +175,8 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     let forward = [forward_features(), term_features()].concat();
     modules.extend(forward.iter().map(|features| forward_module(&sources, features).unwrap()));
     modules.extend(display_features().into_iter().map(|features| display_module(&sources, features).unwrap()));
+    let deferred = forward.iter().step_by(50).map(|features| deferred_module(&sources, features, 4).unwrap());
+    modules.extend(deferred.chain([covered_module(&sources, 4).unwrap(), visibility_module(&sources).unwrap()]));
     let used: BTreeSet<&str> = modules.iter().flat_map(|module| module.files()).collect();
     let unused: Vec<&String> = embedded.iter().filter(|path| !used.contains(path.as_str())).collect();
     assert!(unused.is_empty(), "no module contains {unused:?}");

@@ -15,6 +15,7 @@ mod lights;
 mod lit_plane;
 mod lobe_tiers;
 mod mutants;
+mod paths;
 mod shaders;
 mod stability;
 mod support;

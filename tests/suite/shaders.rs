@@ -2,14 +2,18 @@
 
 use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use specula::gpu::bindings::{FRAME_TAPS, background_entries, display_entries, frame_entries, material_entries};
+use specula::gpu::bindings::{
+    FRAME_INSTANCES, FRAME_TAPS, FRAME_UNIFORM, background_entries, covered_entries, display_entries, frame_entries,
+    material_entries, pulled_entries,
+};
 use specula::scene::{
     AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, Texture, TextureRef,
     TextureSlot, ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
     Composed, DisplayFeatures, ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
-    VertexFeatures, background_module, display_module, forward_module,
+    VertexFeatures, background_module, covered_module, deferred_module, display_module, forward_module,
+    visibility_module,
 };
 use std::collections::BTreeMap;
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
@@ -105,7 +109,7 @@ type Bindings = BTreeMap<(u32, u32), (&'static str, ShaderStages)>;
 /// The bindings that the entry points of a module reach.
 fn used(composed: &Composed) -> Bindings {
     let module = composed.parse().unwrap_or_else(|error| panic!("{error}\n{}", composed.text));
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).unwrap();
+    let info = Validator::new(ValidationFlags::all(), Capabilities::PRIMITIVE_INDEX).validate(&module).unwrap();
     let mut bindings = Bindings::new();
     for (index, entry_point) in module.entry_points.iter().enumerate() {
         let stage = match entry_point.stage {
@@ -190,4 +194,26 @@ fn the_other_passes_use_all_that_is_bound_and_nothing_else() {
     for features in display_features() {
         assert_eq!(used(&display_module(&sources, features).unwrap()), offered(&[display_entries()]), "{features:?}");
     }
+}
+
+#[test]
+fn deferred_modules_use_all_that_is_bound_and_of_the_frame_what_forward_modules_use() {
+    let sources = ShaderSources::default();
+    for samples in [1, 4] {
+        assert_eq!(used(&covered_module(&sources, samples).unwrap()), offered(&[covered_entries(samples > 1)]));
+        for features in forward_features().into_iter().step_by(7) {
+            let used = used(&deferred_module(&sources, &features, samples).unwrap());
+            let mut expected = self::used(&forward_module(&sources, &features).unwrap());
+            // The draw's own uniform places it, and only shading reads the frame.
+            expected.remove(&(0, FRAME_INSTANCES));
+            expected.retain(|_, (_, stages)| stages.contains(ShaderStages::FRAGMENT));
+            expected.values_mut().for_each(|(_, stages)| *stages = ShaderStages::FRAGMENT);
+            expected.insert((0, FRAME_UNIFORM), ("uniform", ShaderStages::FRAGMENT));
+            let pulled = offered(&[Vec::new(), Vec::new(), pulled_entries(samples > 1)]);
+            expected.extend(pulled);
+            assert_eq!(used, expected, "{features}");
+        }
+    }
+    let visibility = used(&visibility_module(&sources).unwrap());
+    assert!(visibility.contains_key(&(1, 0)), "{visibility:?}");
 }

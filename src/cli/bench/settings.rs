@@ -1,7 +1,9 @@
 //! The settings that trade time for error, and which of them are compared.
 
 use crate::bake::environment::BakeOptions;
+use crate::capture::CaptureOptions;
 use crate::gpu::formats::Precision;
+use crate::renderer::PathChoice;
 use crate::scene::Quality;
 use std::fmt;
 
@@ -16,6 +18,10 @@ pub(in crate::cli) struct Setting {
     pub(in crate::cli) precision: Precision,
     /// The most texels on a side of the prefiltered environment.
     pub(in crate::cli) prefilter_side: u32,
+    /// From triangles to radiance.
+    pub(in crate::cli) path: PathChoice,
+    /// Where that is not the base's, as names have it.
+    pub(in crate::cli) path_name: &'static str,
 }
 
 /// Samples of the rasteriser, and how much larger the picture is drawn, that every tier is combined with.
@@ -24,9 +30,10 @@ const SAMPLINGS: [(u32, u32); 3] = [(1, 1), (4, 1), (1, 2)];
 const PREFILTER_SIDES: [u32; 2] = [256, 128];
 
 impl Setting {
-    pub(in crate::cli) fn new(quality: Quality, msaa: u32, precision: Precision) -> Self {
+    pub(in crate::cli) fn new(quality: Quality, capture: CaptureOptions, path: PathChoice) -> Self {
+        let CaptureOptions { samples: msaa, precision } = capture;
         let prefilter_side = BakeOptions::default().max_side;
-        Self { quality, msaa, supersampling: 1, precision, prefilter_side }
+        Self { quality, msaa, supersampling: 1, precision, prefilter_side, path, path_name: "" }
     }
 
     /// The same light, through the middle of each pixel.
@@ -70,6 +77,7 @@ impl fmt::Display for Setting {
             (1, side) => write!(f, ", {side}x{side} SSAA")?,
             (msaa, side) => write!(f, ", {side}x{side} SSAA + {msaa}x MSAA")?,
         }
+        f.write_str(self.path_name)?;
         f.write_str(&self.extras())
     }
 }
@@ -88,7 +96,15 @@ pub(super) fn settings(base: Setting, has_environment: bool) -> Vec<Setting> {
         Precision::Half => Precision::Float,
         Precision::Float => Precision::Half,
     };
-    let alone = [Setting { supersampling: 2, ..base }, Setting { precision: other_precision, ..base }];
+    let (path, path_name) = match base.path {
+        PathChoice::Forward => (PathChoice::Deferred, ", deferred"),
+        PathChoice::Faster | PathChoice::Deferred => (PathChoice::Forward, ", forward"),
+    };
+    let alone = [
+        Setting { supersampling: 2, ..base },
+        Setting { precision: other_precision, ..base },
+        Setting { path, path_name, ..base },
+    ];
     let prefiltered = PREFILTER_SIDES.map(|prefilter_side| Setting { prefilter_side, ..base });
     let prefiltered = prefiltered.into_iter().filter(|_| has_environment);
     let mut settings = vec![base];
@@ -106,12 +122,12 @@ mod tests {
 
     #[test]
     fn the_base_comes_first_and_nothing_twice() {
-        let base = Setting::new(Quality::Standard, 4, Precision::Half);
+        let base = Setting::new(Quality::Standard, CaptureOptions::default(), PathChoice::Faster);
         let all = settings(base, true);
         assert_eq!(all[0], base);
         assert!(all.iter().enumerate().all(|(i, setting)| !all[..i].contains(setting)));
-        assert_eq!(all.len(), 4 * 3 + 2 + 2);
-        assert_eq!(settings(base, false).len(), 3 + 2);
+        assert_eq!(all.len(), 4 * 3 + 3 + 2);
+        assert_eq!(settings(base, false).len(), 3 + 3);
         let names: Vec<String> = all.iter().map(ToString::to_string).collect();
         assert_eq!(names[0], "standard, 4x MSAA");
         assert!(names.iter().enumerate().all(|(i, name)| !names[..i].contains(name)), "{names:?}");

@@ -8,15 +8,16 @@ use crate::cli::error::CliError;
 use crate::gpu::Gpu;
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
-use crate::renderer::Renderer;
+use crate::renderer::{PathChoice, Renderer};
 use crate::scene::{Background, RadianceImage, Scene, Term, View};
 use glam::Vec4;
 
 /// Frames of each setting that are drawn and forgotten: the first compiles shaders.
 const WARM_UP_FRAMES: u32 = 3;
 
-/// Whether suns are parted from the environment, and the side of its prefiltered maps.
-type MapsKey = (bool, u32);
+/// Whether suns are parted from the environment, the side of its prefiltered maps, and whether only the forward path is
+/// wanted.
+type MapsKey = (bool, u32, bool);
 
 pub(in crate::cli) struct Stage<'a> {
     gpu: &'a Gpu,
@@ -51,7 +52,9 @@ impl<'a> Stage<'a> {
         let view = View { size_px: view.size_px * setting.supersampling, quality: setting.quality, ..view.clone() };
         let options = CaptureOptions { samples: setting.msaa, precision: setting.precision };
         let target = CaptureTarget::new(self.gpu, &view, options)?;
-        let key = (setting.quality.parts_suns(), setting.prefilter_side);
+        let is_forward = setting.path == PathChoice::Forward;
+        let key = (setting.quality.parts_suns(), setting.prefilter_side, is_forward);
+        self.renderer.set_paths(setting.path);
         let known = self.uploaded.iter().position(|(other, _)| *other == key);
         let scene = known.unwrap_or(self.uploaded.len());
         if known.is_none() {
@@ -60,7 +63,7 @@ impl<'a> Stage<'a> {
         Ok(Shot { setting, view, target, scene })
     }
 
-    fn upload(&self, (suns, max_side): MapsKey, progress: &dyn Progress) -> Result<GpuScene, CaptureError> {
+    fn upload(&self, (suns, max_side, _): MapsKey, progress: &dyn Progress) -> Result<GpuScene, CaptureError> {
         let maps = self
             .scene
             .lit_environment()
@@ -97,6 +100,7 @@ impl<'a> Stage<'a> {
     fn frame(&mut self, shot: &Shot) -> Result<FrameTimes, CaptureError> {
         let Self { gpu, renderer, timestamps, uploaded, .. } = self;
         let (_, scene) = &mut uploaded[shot.scene];
+        renderer.set_paths(shot.setting.path);
         time_frame(gpu, timestamps.as_ref(), |encoder| {
             record(gpu, renderer, encoder, scene, &shot.view, &shot.target, true).map(|_| ())
         })
@@ -117,6 +121,7 @@ impl<'a> Stage<'a> {
 
     fn capture(&mut self, shot: &Shot, view: &View) -> Result<CapturedFrame, CaptureError> {
         let (_, scene) = &mut self.uploaded[shot.scene];
+        self.renderer.set_paths(shot.setting.path);
         let wanted = Wanted { radiance: true, display: true };
         submit(self.gpu, &mut self.renderer, scene, view, &shot.target, wanted)?.wait(self.gpu)
     }

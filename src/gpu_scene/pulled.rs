@@ -1,0 +1,131 @@
+//! Geometry as textures, for a fragment shader that fetches the corners of its triangle by itself: a texel is four
+//! numbers in one fetch, where a buffer takes one for each.
+
+use super::gpu_instance;
+use crate::frame::{Drawable, Drawables, PlacedInstance};
+use crate::gpu::formats;
+use crate::scene::{Bounds, Primitive, Scene};
+use crate::shader::types::Instance;
+use crate::shader::{PULLED_ROW_TEXELS, texels_per_vertex};
+use glam::DVec3;
+use std::collections::HashMap;
+use wgpu::util::{DeviceExt, TextureDataOrder};
+
+/// Vertices, attributes side by side, and triangles.
+#[derive(Debug)]
+pub struct PulledGeometry {
+    pub(crate) vertices: wgpu::Texture,
+    pub(crate) triangles: wgpu::Texture,
+    /// By mesh and primitive.
+    pub(crate) places: HashMap<(usize, usize), PulledPlace>,
+    /// By drawable: its one instance, and where that is.
+    pub(crate) instances: Vec<Instance>,
+    pub(crate) bounds_in_world: Vec<Bounds>,
+}
+
+/// Where a primitive begins, in texels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PulledPlace {
+    pub(crate) vertices: u32,
+    pub(crate) triangles: u32,
+}
+
+impl PulledGeometry {
+    /// None where the device has no textures of this size.
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        (drawables, origin_in_world): (&Drawables, DVec3),
+    ) -> Option<Self> {
+        let (mut vertices, mut triangles) = (Vec::<[f32; 4]>::new(), Vec::<[u32; 4]>::new());
+        let mut places = HashMap::new();
+        for drawable in &drawables.draws {
+            places.entry((drawable.mesh, drawable.primitive)).or_insert_with(|| {
+                let place = PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32 };
+                let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
+                triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
+                (0..primitive.positions.len()).for_each(|i| append_vertex(&mut vertices, drawable, primitive, i));
+                place
+            });
+        }
+        Some(Self {
+            vertices: texture(device, queue, formats::PULLED_VERTICES, bytemuck::cast_slice(&vertices))?,
+            triangles: texture(device, queue, formats::PULLED_TRIANGLES, bytemuck::cast_slice(&triangles))?,
+            places,
+            instances: drawables
+                .draws
+                .iter()
+                .map(|drawable| gpu_instance(first_instance(drawables, drawable), origin_in_world))
+                .collect(),
+            bounds_in_world: drawables
+                .draws
+                .iter()
+                .map(|drawable| bounds_in_world(scene, drawables, drawable))
+                .collect(),
+        })
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        [&self.vertices, &self.triangles].map(|t| u64::from(t.width()) * u64::from(t.height()) * 16).iter().sum()
+    }
+}
+
+fn first_instance<'a>(drawables: &'a Drawables, drawable: &Drawable) -> &'a PlacedInstance {
+    &drawables.instances[drawable.instances.start as usize]
+}
+
+/// Around the first instance.
+fn bounds_in_world(scene: &Scene, drawables: &Drawables, drawable: &Drawable) -> Bounds {
+    let world_from_object = first_instance(drawables, drawable).instance.world_from_object;
+    let mut bounds = Bounds::EMPTY;
+    for position in &scene.meshes[drawable.mesh].primitives[drawable.primitive].positions {
+        bounds.grow(world_from_object.transform_point3(position.as_dvec3()));
+    }
+    bounds
+}
+
+/// The attributes in the order of [`crate::shader::attributes`].
+fn append_vertex(texels: &mut Vec<[f32; 4]>, drawable: &Drawable, primitive: &Primitive, i: usize) {
+    let features = &drawable.vertex_features;
+    let mut floats = primitive.positions[i].to_array().to_vec();
+    if let (true, Some(normals)) = (features.normal, &primitive.normals) {
+        floats.extend(normals[i].to_array());
+    }
+    if let (true, Some(tangents)) = (features.tangent, &primitive.tangents) {
+        floats.extend(tangents[i].to_array());
+    }
+    if let (true, Some(colors)) = (features.color, &primitive.colors) {
+        floats.extend(colors[i].to_array());
+    }
+    features.uv_sets().for_each(|set| floats.extend(primitive.uvs[set as usize][i].to_array()));
+    floats.resize(4 * texels_per_vertex(features) as usize, 0.0);
+    texels.extend(floats.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]));
+}
+
+/// Rows of [`PULLED_ROW_TEXELS`] texels of 16 bytes.
+fn texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    format: wgpu::TextureFormat,
+    texels: &[u8],
+) -> Option<wgpu::Texture> {
+    let row = 16 * PULLED_ROW_TEXELS as usize;
+    let mut texels = texels.to_vec();
+    texels.resize(texels.len().next_multiple_of(row).max(row), 0);
+    let height = (texels.len() / row) as u32;
+    let limit = device.limits().max_texture_dimension_2d;
+    (height <= limit && PULLED_ROW_TEXELS <= limit).then(|| {
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some("pulled geometry"),
+            size: wgpu::Extent3d { width: PULLED_ROW_TEXELS, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        device.create_texture_with_data(queue, &descriptor, TextureDataOrder::LayerMajor, &texels)
+    })
+}

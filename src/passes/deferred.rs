@@ -1,0 +1,237 @@
+//! Surfaces in passes of their own: which triangle each sample shows, whose each pixel is, then the shader of each draw
+//! once a pixel.
+//!
+//! Where triangles are a few pixels in size, a rasteriser shades many more pixels than are seen: those beside an edge
+//! once for every triangle, in blocks that are mostly empty, and those that are hidden later.
+
+mod pipelines;
+
+use crate::frame::{Draw, FramePlan, rectangle_around};
+use crate::gpu_scene::{GpuScene, PulledGeometry, entry};
+use crate::scene::View;
+use crate::shader::types::PulledDraw;
+use crate::shader::{SEEN_SAMPLES_BINDING, ShaderError, ShaderSources};
+use glam::UVec2;
+pub use pipelines::DeferredPipelines;
+use pipelines::ShadingTarget;
+use wgpu::util::DeviceExt;
+
+/// What a frame is drawn into by way of the visibility of its triangles.
+#[derive(Debug, Clone, Copy)]
+pub struct DeferredTarget<'a> {
+    /// Of the radiance.
+    pub format: wgpu::TextureFormat,
+    /// Of visibility and depth.
+    pub samples: u32,
+    /// In `formats::VISIBILITY`, to be sampled later.
+    pub visibility: &'a wgpu::TextureView,
+    /// In `formats::DEPTH`, with the samples of the visibility.
+    pub depth: &'a wgpu::TextureView,
+    /// In `formats::DEPTH`, one sample: whose each pixel is.
+    pub covered: &'a wgpu::TextureView,
+    pub radiance: &'a wgpu::TextureView,
+    pub size_px: UVec2,
+    /// Coverage where nothing is drawn: 0, or 1 where that is black and not transparent.
+    pub coverage: f32,
+}
+
+/// What one view binds.
+#[derive(Debug)]
+pub struct DeferredPass {
+    draws: Vec<PreparedDraw>,
+    cover: (wgpu::RenderPipeline, wgpu::BindGroup),
+}
+
+#[derive(Debug)]
+struct PreparedDraw {
+    draw: Draw,
+    /// Corner and size of the part of the picture that it can be in.
+    rectangle: [UVec2; 2],
+    see: (wgpu::RenderPipeline, wgpu::BindGroup),
+    shade: (wgpu::RenderPipeline, wgpu::BindGroup),
+}
+
+impl DeferredPipelines {
+    /// Makes ready to draw the opaque part of `plan`.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        (scene, geometry): (&GpuScene, &PulledGeometry),
+        (plan, view): (&FramePlan, &View),
+        target: &DeferredTarget<'_>,
+    ) -> Result<DeferredPass, ShaderError> {
+        let DeferredTarget { format, samples, coverage, .. } = *target;
+        let into = ShadingTarget { format, samples, is_filled: coverage > 0.0 };
+        let layouts = self.layouts(device, target.samples);
+        let [vertices, triangles] =
+            [&geometry.vertices, &geometry.triangles].map(|texture| texture.create_view(&Default::default()));
+        let seen = entry(SEEN_SAMPLES_BINDING, wgpu::BindingResource::TextureView(target.visibility));
+        let group = |label, layout, entries: &[wgpu::BindGroupEntry<'_>]| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
+        };
+        let mut draws = Vec::new();
+        for (index, draw) in plan.opaque.iter().enumerate() {
+            let key = plan.pipelines[draw.pipeline];
+            let number = index as u32 + 1;
+            let (Some(uniform), Some(rectangle)) = (
+                pulled_draw(scene, geometry, draw, key.mirrored, (number, view.size_px)),
+                rectangle_around(&geometry.bounds_in_world[draw.drawable], view),
+            ) else {
+                continue;
+            };
+            let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("pulled draw"),
+                contents: bytemuck::bytes_of(&uniform),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
+            let entries = [
+                entry(0, uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&vertices)),
+                entry(2, wgpu::BindingResource::TextureView(&triangles)),
+                seen.clone(),
+            ];
+            draws.push(PreparedDraw {
+                draw: *draw,
+                rectangle,
+                see: (
+                    self.visibility(device, sources, scene, &key, target.samples)?,
+                    group("visibility", &layouts.visibility, &entries[..1]),
+                ),
+                shade: (
+                    self.shading(device, sources, scene, &key.features, into)?,
+                    group("deferred", &layouts.pulled, &entries),
+                ),
+            });
+        }
+        let cover = (self.covered(device, sources, target.samples)?, group("covered", &layouts.covered, &[seen]));
+        Ok(DeferredPass { draws, cover })
+    }
+}
+
+fn pulled_draw(
+    scene: &GpuScene,
+    geometry: &PulledGeometry,
+    draw: &Draw,
+    mirrored: bool,
+    (number, size_px): (u32, UVec2),
+) -> Option<PulledDraw> {
+    let drawable = &scene.drawables.draws[draw.drawable];
+    let place = geometry.places.get(&(drawable.mesh, drawable.primitive))?;
+    let instance = &geometry.instances[draw.drawable];
+    Some(PulledDraw {
+        first_triangle: place.triangles,
+        first_vertex: place.vertices,
+        number,
+        world_from_object: instance.world_from_object,
+        normal_from_object: instance.normal_from_object,
+        handedness: instance.handedness,
+        ndc_step: [2.0 / size_px.x as f32, -2.0 / size_px.y as f32],
+        front: if mirrored { -1.0 } else { 1.0 },
+        ..Default::default()
+    })
+}
+
+impl DeferredPass {
+    /// Records all passes; `behind` draws into the last one, where nothing is and where pixels are shared.
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &GpuScene,
+        frame_group: &wgpu::BindGroup,
+        target: &DeferredTarget<'_>,
+        behind: impl FnOnce(&mut wgpu::RenderPass<'_>),
+    ) {
+        let (clear, keep, discard) = (wgpu::LoadOp::Clear(0.0), wgpu::StoreOp::Store, wgpu::StoreOp::Discard);
+        {
+            let color = attachment(target.visibility, wgpu::Color::TRANSPARENT);
+            let mut pass = begin(encoder, "visibility", Some(color), depth_attachment(target.depth, clear, discard));
+            self.see(&mut pass, scene, frame_group);
+        }
+        {
+            let mut pass = begin(encoder, "covered", None, depth_attachment(target.covered, clear, keep));
+            pass.set_pipeline(&self.cover.0);
+            pass.set_bind_group(0, &self.cover.1, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        let empty = wgpu::Color { a: f64::from(target.coverage), ..wgpu::Color::TRANSPARENT };
+        let color = attachment(target.radiance, empty);
+        let mut pass =
+            begin(encoder, "deferred", Some(color), depth_attachment(target.covered, wgpu::LoadOp::Load, discard));
+        self.shade(&mut pass, scene, frame_group, target);
+        behind(&mut pass);
+    }
+
+    fn see(&self, pass: &mut wgpu::RenderPass<'_>, scene: &GpuScene, frame_group: &wgpu::BindGroup) {
+        pass.set_bind_group(0, frame_group, &[]);
+        pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
+        for prepared in &self.draws {
+            let drawable = &scene.drawables.draws[prepared.draw.drawable];
+            let Some(primitive) = scene.primitives.get(&(drawable.mesh, drawable.primitive)) else { continue };
+            pass.set_pipeline(&prepared.see.0);
+            pass.set_bind_group(1, &prepared.see.1, &[]);
+            pass.set_vertex_buffer(0, scene.vertices.slice(primitive.attributes[0].clone()));
+            pass.draw_indexed(primitive.indices.clone(), 0, drawable.instances.clone());
+        }
+    }
+
+    fn shade(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &GpuScene,
+        frame_group: &wgpu::BindGroup,
+        target: &DeferredTarget<'_>,
+    ) {
+        pass.set_bind_group(0, frame_group, &[]);
+        for prepared in &self.draws {
+            let drawable = &scene.drawables.draws[prepared.draw.drawable];
+            let material = (drawable.material, drawable.material_features);
+            let Some(group) = scene.materials.groups.get(&material) else { continue };
+            pass.set_pipeline(&prepared.shade.0);
+            pass.set_bind_group(1, group, &[]);
+            pass.set_bind_group(2, &prepared.shade.1, &[]);
+            let [corner, size] = prepared.rectangle;
+            pass.set_scissor_rect(corner.x, corner.y, size.x, size.y);
+            // Pixels that are the draw's alone, and those that it shares.
+            pass.draw(0..3, 0..2);
+        }
+        pass.set_scissor_rect(0, 0, target.size_px.x, target.size_px.y);
+    }
+}
+
+fn attachment(view: &wgpu::TextureView, clear: wgpu::Color) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+    }
+}
+
+fn depth_attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<f32>,
+    store: wgpu::StoreOp,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load, store }),
+        stencil_ops: None,
+    }
+}
+
+fn begin<'encoder>(
+    encoder: &'encoder mut wgpu::CommandEncoder,
+    label: &'static str,
+    color: Option<wgpu::RenderPassColorAttachment<'_>>,
+    depth: wgpu::RenderPassDepthStencilAttachment<'_>,
+) -> wgpu::RenderPass<'encoder> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: color.map(Some).as_slice(),
+        depth_stencil_attachment: Some(depth),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
+}

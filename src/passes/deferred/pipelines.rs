@@ -1,0 +1,179 @@
+//! The pipelines of the deferred path, made when they are first needed.
+
+use crate::frame::PipelineKey;
+use crate::gpu::bindings::{covered_layout, pulled_layout, visibility_layout};
+use crate::gpu::formats;
+use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, depth_state, fullscreen_pipeline, primitive_state};
+use crate::gpu_scene::GpuScene;
+use crate::shader::{
+    Composed, ForwardFeatures, ShaderError, ShaderSources, covered_module, create_module, deferred_module,
+    visibility_module,
+};
+use std::collections::HashMap;
+
+/// Pipelines by what they draw and into what.
+#[derive(Debug, Default)]
+pub struct DeferredPipelines {
+    layouts: HashMap<u32, Layouts>,
+    modules: HashMap<String, (Composed, wgpu::ShaderModule)>,
+    visibility: HashMap<(bool, bool, u32), wgpu::RenderPipeline>,
+    covered: HashMap<u32, wgpu::RenderPipeline>,
+    shading: HashMap<(ForwardFeatures, ShadingTarget), wgpu::RenderPipeline>,
+}
+
+/// By number of samples.
+#[derive(Debug, Clone)]
+pub(super) struct Layouts {
+    pub(super) visibility: wgpu::BindGroupLayout,
+    pub(super) covered: wgpu::BindGroupLayout,
+    pub(super) pulled: wgpu::BindGroupLayout,
+}
+
+/// What tells shading pipelines apart beside the shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct ShadingTarget {
+    pub(super) format: wgpu::TextureFormat,
+    pub(super) samples: u32,
+    /// Coverage is 1 from the start.
+    pub(super) is_filled: bool,
+}
+
+impl ShadingTarget {
+    /// Draws that share a pixel add up.
+    fn blend(self) -> wgpu::BlendState {
+        let add = |src_factor| wgpu::BlendComponent {
+            src_factor,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let alpha = if self.is_filled { wgpu::BlendFactor::Zero } else { wgpu::BlendFactor::One };
+        wgpu::BlendState { color: add(wgpu::BlendFactor::One), alpha: add(alpha) }
+    }
+}
+
+impl DeferredPipelines {
+    /// Name and text of every module made so far.
+    pub fn sources(&self) -> impl Iterator<Item = (String, &str)> {
+        self.modules.iter().map(|(name, (composed, _))| (name.clone(), composed.text.as_str()))
+    }
+
+    pub(super) fn layouts(&mut self, device: &wgpu::Device, samples: u32) -> Layouts {
+        let make = || Layouts {
+            visibility: visibility_layout(device),
+            covered: covered_layout(device, samples > 1),
+            pulled: pulled_layout(device, samples > 1),
+        };
+        self.layouts.entry(samples).or_insert_with(make).clone()
+    }
+
+    fn module(
+        &mut self,
+        device: &wgpu::Device,
+        name: String,
+        compose: impl FnOnce() -> Result<Composed, ShaderError>,
+    ) -> Result<wgpu::ShaderModule, ShaderError> {
+        if let Some((_, module)) = self.modules.get(&name) {
+            return Ok(module.clone());
+        }
+        let composed = compose()?;
+        let module = create_module(device, &name, &composed)?;
+        self.modules.insert(name, (composed, module.clone()));
+        Ok(module)
+    }
+
+    /// Positions alone.
+    pub(super) fn visibility(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        scene: &GpuScene,
+        key: &PipelineKey,
+        samples: u32,
+    ) -> Result<wgpu::RenderPipeline, ShaderError> {
+        let index = (key.mirrored, key.cull_back, samples);
+        if let Some(pipeline) = self.visibility.get(&index) {
+            return Ok(pipeline.clone());
+        }
+        let module = self.module(device, "visibility".to_owned(), || visibility_module(sources))?;
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("visibility"),
+            bind_group_layouts: &[Some(&scene.frame_layout), Some(&self.layouts(device, samples).visibility)],
+            immediate_size: 0,
+        });
+        let position = wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 0 };
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("visibility"),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[Some(wgpu::VertexBufferLayout {
+                    array_stride: position.format.size(),
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes: &[position],
+                })],
+            },
+            primitive: primitive_state(wgpu::PrimitiveTopology::TriangleList, key.mirrored, key.cull_back),
+            depth_stencil: Some(depth_state(true)),
+            multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(formats::VISIBILITY.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        self.visibility.insert(index, pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// Whose each pixel is.
+    pub(super) fn covered(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        samples: u32,
+    ) -> Result<wgpu::RenderPipeline, ShaderError> {
+        if let Some(pipeline) = self.covered.get(&samples) {
+            return Ok(pipeline.clone());
+        }
+        let module = self.module(device, format!("covered.{samples}"), || covered_module(sources, samples))?;
+        let into = FullscreenTarget { format: None, samples: 1, depth: FullscreenDepth::Written, blend: None };
+        let layouts = self.layouts(device, samples);
+        let pipeline = fullscreen_pipeline(device, "covered", &[Some(&layouts.covered)], &module, into);
+        self.covered.insert(samples, pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// The shader of a draw.
+    pub(super) fn shading(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        scene: &GpuScene,
+        features: &ForwardFeatures,
+        target: ShadingTarget,
+    ) -> Result<wgpu::RenderPipeline, ShaderError> {
+        let features = features.module_key();
+        if let Some(pipeline) = self.shading.get(&(features, target)) {
+            return Ok(pipeline.clone());
+        }
+        let name = format!("deferred.{}+{features}", target.samples);
+        let module = self.module(device, name, || deferred_module(sources, &features, target.samples))?;
+        let layouts = self.layouts(device, target.samples);
+        let material = scene.materials.layouts.get(&features.material);
+        let groups = [Some(&scene.frame_layout), material, Some(&layouts.pulled)];
+        let into = FullscreenTarget {
+            format: Some(target.format),
+            samples: 1,
+            depth: FullscreenDepth::Equal,
+            blend: Some(target.blend()),
+        };
+        let pipeline = fullscreen_pipeline(device, "deferred", &groups, &module, into);
+        self.shading.insert((features, target), pipeline.clone());
+        Ok(pipeline)
+    }
+}
