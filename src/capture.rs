@@ -4,9 +4,10 @@ use crate::gpu::formats::{self, Precision};
 use crate::gpu::{Gpu, GpuError, Readback, read_texel, read_texture};
 use crate::gpu_scene::GpuScene;
 use crate::passes::ForwardTarget;
-use crate::renderer::{FrameStats, RadianceTarget, RenderError, Renderer};
+use crate::renderer::{FrameState, FrameStats, RadianceTarget, RenderError, Renderer};
 use crate::scene::{RadianceImage, View};
 use glam::{UVec2, Vec4};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Why there is no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -41,7 +42,11 @@ pub struct CaptureTarget {
     multisampled: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
     radiance: wgpu::Texture,
+    radiance_view: wgpu::TextureView,
     display: wgpu::Texture,
+    display_view: wgpu::TextureView,
+    /// What frames into these textures have in common.
+    state: Mutex<FrameState>,
 }
 
 impl CaptureTarget {
@@ -64,14 +69,34 @@ impl CaptureTarget {
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let readable = attachment | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
-        let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        let radiance = texture("radiance", format, 1, readable);
+        let display = texture("display", formats::CAPTURED_DISPLAY, 1, readable);
         Ok(Self {
             options,
-            multisampled: (samples > 1).then(|| view(texture("multisampled radiance", format, samples, attachment))),
-            depth: view(texture("depth", formats::DEPTH, samples, attachment)),
-            radiance: texture("radiance", format, 1, readable),
-            display: texture("display", formats::CAPTURED_DISPLAY, 1, readable),
+            multisampled: (samples > 1).then(|| view(&texture("multisampled radiance", format, samples, attachment))),
+            depth: view(&texture("depth", formats::DEPTH, samples, attachment)),
+            radiance_view: view(&radiance),
+            radiance,
+            display_view: view(&display),
+            display,
+            state: Mutex::default(),
         })
+    }
+
+    /// Of the frames drawn so far.
+    pub fn state(&self) -> MutexGuard<'_, FrameState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// All attachments, or what draws one pixel of them.
+    fn attachments(&self, pixel: Option<UVec2>) -> RadianceTarget<'_> {
+        let ForwardTarget { format, samples } = self.forward_target();
+        let (color, resolve) = match &self.multisampled {
+            Some(multisampled) => (multisampled, Some(&self.radiance_view)),
+            None => (&self.radiance_view, None),
+        };
+        RadianceTarget { format, samples, color, resolve, depth: &self.depth, pixel }
     }
 
     pub fn forward_target(&self) -> ForwardTarget {
@@ -164,20 +189,31 @@ fn record_part(
     target: &CaptureTarget,
     (display, pixel): (bool, Option<UVec2>),
 ) -> Result<FrameStats, CaptureError> {
-    let radiance = target.radiance.create_view(&Default::default());
-    let (color, resolve) = match &target.multisampled {
-        Some(multisampled) => (multisampled, Some(&radiance)),
-        None => (&radiance, None),
-    };
-    let ForwardTarget { format, samples } = target.forward_target();
-    let attachments = RadianceTarget { format, samples, color, resolve, depth: &target.depth, pixel };
-    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, encoder, scene, view, &attachments)?;
+    let (gpu, mut state) = ((&gpu.device, &gpu.queue), target.state());
+    let stats = renderer.encode_radiance(gpu, encoder, scene, view, &target.attachments(pixel), &mut state)?;
     if display {
-        let display = target.display.create_view(&Default::default());
-        let display = (&display, formats::CAPTURED_DISPLAY);
-        renderer.encode_display(&gpu.device, encoder, view, &radiance, display)?;
+        let display = (&target.display_view, formats::CAPTURED_DISPLAY);
+        renderer.encode_display(gpu, encoder, view, &target.radiance_view, display, &mut state)?;
     }
     Ok(stats)
+}
+
+/// One turn of a render loop: draws the view into the target and displays it there, unless that is what the target shows
+/// already. Then nothing is recorded, submitted or allocated, and the answer is `None`.
+pub fn redraw(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+) -> Result<Option<FrameStats>, CaptureError> {
+    if renderer.is_current(&target.state(), scene, view, &target.attachments(None), Some(&target.display_view)) {
+        return Ok(None);
+    }
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+    let stats = record(gpu, renderer, &mut encoder, scene, view, target, true)?;
+    gpu.queue.submit([encoder.finish()]);
+    Ok(Some(stats))
 }
 
 /// Draws one frame and starts its way back.

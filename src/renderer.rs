@@ -3,17 +3,21 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
+mod frame_state;
+
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
-use crate::frame::{FramePlan, plan};
+use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, clip_from_origin, plan};
 use crate::gpu::formats;
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
 use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
-use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
+use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, Topology, View};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
 use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
 use glam::{DMat3, DVec2, DVec3, DVec4, UVec2};
-use wgpu::util::DeviceExt;
+use std::sync::Arc;
+
+pub use frame_state::FrameState;
 
 /// Why a frame could not be recorded.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -45,10 +49,15 @@ pub struct RadianceTarget<'a> {
 /// What a recorded frame consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FrameStats {
+    /// Draw calls.
     pub draws: u32,
     pub triangles: u64,
     /// Names of the distinct forward pipelines, sorted.
-    pub pipelines: Vec<String>,
+    pub pipelines: Arc<[String]>,
+    /// Distinct primitives, and why some are not drawn.
+    pub drawables: Culled,
+    /// Primitives at their places.
+    pub placements: Culled,
 }
 
 /// Pipelines and tables for one device.
@@ -59,6 +68,8 @@ pub struct Renderer {
     forward: ForwardPipelines,
     background: BackgroundPipeline,
     display: DisplayPipelines,
+    /// `Off` draws the same pictures with more work.
+    pub culling: Culling,
 }
 
 impl Renderer {
@@ -74,6 +85,7 @@ impl Renderer {
             forward: ForwardPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
+            culling: Culling::On,
         }
     }
 
@@ -96,25 +108,43 @@ impl Renderer {
         view: &View,
         target: ForwardTarget,
     ) -> Result<FramePlan, RenderError> {
-        let plan = plan(&scene.drawables, scene.features, view);
+        let options = PlanOptions { samples: target.samples, culling: self.culling };
+        let plan = plan(&scene.drawables, scene.features, view, options);
         self.forward.prepare(device, &self.sources, scene, &plan, target)?;
         Ok(plan)
+    }
+
+    /// Whether the last frame recorded with `state` has left in the targets what recording this one would: then nothing
+    /// needs to be recorded, and asking has cost no allocation. `display` is where the radiance is displayed, if it is.
+    pub fn is_current(
+        &self,
+        state: &FrameState,
+        scene: &GpuScene,
+        view: &View,
+        target: &RadianceTarget<'_>,
+        display: Option<&wgpu::TextureView>,
+    ) -> bool {
+        let radiance = target.resolve.unwrap_or(target.color);
+        state.shows(scene, view, self.culling, target)
+            && display.is_none_or(|display| state.displays(view, radiance, display))
     }
 
     /// Records the forward pass: linear radiance, multiplied with coverage.
     pub fn encode_radiance(
         &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         encoder: &mut wgpu::CommandEncoder,
         scene: &mut GpuScene,
         view: &View,
         target: &RadianceTarget<'_>,
+        state: &mut FrameState,
     ) -> Result<FrameStats, RenderError> {
         check_size(device, view)?;
         let forward_target = ForwardTarget { format: target.format, samples: target.samples };
-        let plan = self.prepare(device, scene, view, forward_target)?;
-        let panorama = match (&mut scene.environment, plan.panorama) {
+        let options = PlanOptions { samples: target.samples, culling: self.culling };
+        let visible = state.plan_frame((device, queue), scene, view, options);
+        self.forward.prepare(device, &self.sources, scene, &state.plan, forward_target)?;
+        let panorama = match (&mut scene.environment, state.plan.panorama) {
             (Some(environment), true) => {
                 let panorama = environment.panorama(device, queue)?;
                 let uniform = background_uniform(
@@ -123,16 +153,19 @@ impl Renderer {
                     environment.environment_from_world,
                     environment.intensity * panorama.scale,
                 );
-                Some(self.background.prepare(device, &self.sources, forward_target, &panorama, &uniform)?)
+                let uniform = (&uniform, &mut state.background);
+                Some(self.background.prepare((device, queue), &self.sources, forward_target, &panorama, uniform)?)
             }
             _ => None,
         };
-        let frame = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("frame"),
-            contents: bytemuck::bytes_of(&frame_uniform(scene, view)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let frame_group = scene.frame_group(device, &self.shared, &frame);
+        let uniform = frame_uniform(scene, view);
+        let frame_group = state.frame.group(
+            (device, queue),
+            "frame",
+            bytemuck::bytes_of(&uniform),
+            (scene.instances.clone(), visible),
+            |frame, (_, visible)| scene.frame_group(device, &self.shared, (frame, visible)),
+        );
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
             1.0
@@ -143,26 +176,32 @@ impl Renderer {
         if let Some(pixel) = target.pixel {
             pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
         }
-        draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.opaque);
+        let pipelines = self.forward.of_plan(&state.plan, forward_target);
+        draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.opaque);
         if let Some(panorama) = &panorama {
             panorama.draw(&mut pass);
         }
-        draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.blended);
-        Ok(frame_stats(scene, &plan))
+        draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.blended);
+        state.was_drawn(scene, view, self.culling, target);
+        Ok(frame_stats(scene, state))
     }
 
     /// Records exposure, tone map and sRGB from `radiance` into `target`.
     pub fn encode_display(
         &mut self,
-        device: &wgpu::Device,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         encoder: &mut wgpu::CommandEncoder,
         view: &View,
         radiance: &wgpu::TextureView,
         (target, format): (&wgpu::TextureView, wgpu::TextureFormat),
+        state: &mut FrameState,
     ) -> Result<(), RenderError> {
         let features = DisplayFeatures { tone_map: view.tone_map, encode_srgb: !formats::encodes_srgb(format) };
-        let pass = self.display.prepare(device, &self.sources, features, format, radiance, &display_uniform(view))?;
+        let uniform = display_uniform(view);
+        let uniform = (&uniform, &mut state.display);
+        let pass = self.display.prepare((device, queue), &self.sources, features, format, radiance, uniform)?;
         pass.encode(encoder, target);
+        state.was_displayed(view, radiance, target);
         Ok(())
     }
 
@@ -206,17 +245,14 @@ pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> Sha
 }
 
 fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
-    let mut camera = view.camera.clone();
-    let eye = camera.position_in_world() - scene.origin_in_world;
-    camera.world_from_view.w_axis = eye.extend(1.0);
-    let clip_from_view = camera.clip_from_view(view.size_px).as_dmat4();
-    let viewer: DVec4 = match camera.projection {
-        Projection::Perspective { .. } => eye.extend(1.0),
-        Projection::Orthographic { .. } => (-camera.forward_in_world()).extend(0.0),
+    let origin_in_world = scene.drawables.origin_in_world;
+    let viewer: DVec4 = match view.camera.projection {
+        Projection::Perspective { .. } => (view.camera.position_in_world() - origin_in_world).extend(1.0),
+        Projection::Orthographic { .. } => (-view.camera.forward_in_world()).extend(0.0),
     };
     let [channel, channel_index, channel_components] = view.channel.map_or([0; 3], channel_uniform);
     FrameUniform {
-        clip_from_world: (clip_from_view * camera.world_from_view.inverse()).as_mat4().to_cols_array_2d(),
+        clip_from_world: clip_from_origin(view, origin_in_world).to_cols_array_2d(),
         viewer: viewer.as_vec4().to_array(),
         light_count: scene.light_count,
         channel,
@@ -287,16 +323,19 @@ fn begin_forward<'encoder>(
     })
 }
 
-fn frame_stats(scene: &GpuScene, plan: &FramePlan) -> FrameStats {
-    let drawn = plan.opaque.iter().chain(&plan.blended).map(|draw| &scene.drawables.draws[draw.drawable]);
-    let triangles = drawn.clone().filter(|drawable| drawable.topology == crate::scene::Topology::Triangles);
-    let count = |drawable: &crate::frame::Drawable| {
-        let indices = scene.primitives.get(&(drawable.mesh, drawable.primitive)).map_or(0, |p| p.indices.len());
-        (indices / 3 * drawable.instances.len()) as u64
+fn frame_stats(scene: &GpuScene, state: &FrameState) -> FrameStats {
+    let plan = &state.plan;
+    let drawn = || plan.opaque.iter().chain(&plan.blended);
+    let of_triangles = |draw: &&Draw| scene.drawables.draws[draw.drawable].topology == Topology::Triangles;
+    let triangles = |draw: &Draw| {
+        let indices = scene.draws[draw.drawable].primitive.indices.len();
+        indices as u64 / 3 * draw.instances.len() as u64
     };
     FrameStats {
-        draws: drawn.count() as u32,
-        triangles: triangles.map(count).sum(),
-        pipelines: plan.pipelines.iter().map(|key| key.features.to_string()).collect(),
+        draws: drawn().count() as u32,
+        triangles: drawn().filter(of_triangles).map(triangles).sum(),
+        pipelines: Arc::clone(&state.pipeline_names),
+        drawables: plan.drawables,
+        placements: plan.placements,
     }
 }

@@ -10,7 +10,7 @@ mod textures;
 use crate::frame::{Drawables, PlacedInstance};
 use crate::gpu::bindings::{self, frame_layout};
 use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
-use crate::shader::{SceneFeatures, types};
+use crate::shader::{MaterialFeatures, SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
@@ -39,6 +39,19 @@ pub struct UploadedBytes {
     pub environment: u64,
 }
 
+/// What a drawable binds.
+#[derive(Debug)]
+pub(crate) struct GpuDraw {
+    pub(crate) primitive: GpuPrimitive,
+    pub(crate) material: wgpu::BindGroup,
+}
+
+impl GpuDraw {
+    fn new((primitive, material): (GpuPrimitive, wgpu::BindGroup)) -> Self {
+        Self { primitive, material }
+    }
+}
+
 /// What drawing reads of a scene.
 #[derive(Debug)]
 pub struct GpuScene {
@@ -47,14 +60,13 @@ pub struct GpuScene {
     pub bytes: UploadedBytes,
     /// Things that were drawn with less than was asked for.
     pub warnings: Vec<String>,
-    /// Subtracted from every position before it becomes f32.
-    pub(crate) origin_in_world: DVec3,
     pub(crate) light_count: u32,
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) instances: wgpu::Buffer,
-    pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
-    pub(crate) materials: materials::Materials,
+    /// What each of the drawables binds.
+    pub(crate) draws: Vec<GpuDraw>,
+    pub(crate) material_layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
     pub(crate) lights: Option<wgpu::Buffer>,
     pub(crate) environment: Option<GpuEnvironment>,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
@@ -82,8 +94,7 @@ impl GpuScene {
         let mut features = SceneFeatures::of(scene);
         features.suns = features.environment && maps.is_some_and(|maps| !maps.suns.is_empty());
         let drawables = Drawables::new(scene, features);
-        let bounds = scene.bounds();
-        let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
+        let origin_in_world = drawables.origin_in_world;
         let geometry = upload_primitives(device, scene, &drawables)?;
         let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables, disney_table);
         let environment = match (features.environment, &scene.environment, maps) {
@@ -109,30 +120,30 @@ impl GpuScene {
                 environment: environment.as_ref().map_or(0, GpuEnvironment::bytes),
             },
             warnings,
-            origin_in_world,
             light_count: lights.len() as u32,
             instances: storage("instances", bytemuck::cast_slice(&instance_data)),
             lights: features.punctual.then(|| storage("lights", bytemuck::cast_slice(&light_data))),
+            draws: geometry.primitives.into_iter().zip(materials.groups).map(GpuDraw::new).collect(),
             drawables,
             vertices: geometry.vertices,
             indices: geometry.indices,
-            primitives: geometry.primitives,
-            materials,
+            material_layouts: materials.layouts,
             environment,
             frame_layout: frame_layout(device, features),
         })
     }
 
-    /// Group 0 of the forward pass, with the uniform of one view.
+    /// Group 0 of the forward pass, with the uniform of one view and its list of visible instances.
     pub(crate) fn frame_group(
         &self,
         device: &wgpu::Device,
         shared: &SharedTextures,
-        frame: &wgpu::Buffer,
+        (frame, visible): (&wgpu::Buffer, &wgpu::Buffer),
     ) -> wgpu::BindGroup {
         let mut entries = vec![
             entry(bindings::FRAME_UNIFORM, frame.as_entire_binding()),
             entry(bindings::FRAME_INSTANCES, self.instances.as_entire_binding()),
+            entry(bindings::FRAME_VISIBLE, visible.as_entire_binding()),
         ];
         if self.features.is_lit() {
             entries.push(entry(bindings::FRAME_DFG, wgpu::BindingResource::TextureView(&shared.dfg)));

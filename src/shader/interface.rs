@@ -56,7 +56,7 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     );
     text.push_str(
         "fn vertex_out(in: VertexIn) -> VertexOut {\n\
-         \x20   let instance = instances[in.instance];\n\
+         \x20   let instance = instances[visible_instances[in.instance]];\n\
          \x20   var out: VertexOut;\n\
          \x20   out.position_in_world = vec4f(in.position, 1.0) * instance.world_from_object;\n\
          \x20   out.position_in_clip = frame.clip_from_world * vec4f(out.position_in_world, 1.0);\n",
