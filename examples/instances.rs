@@ -17,7 +17,8 @@ use specula::gpu::{Gpu, GpuOptions, GpuRequest};
 use specula::gpu_scene::GpuScene;
 use specula::renderer::Renderer;
 use specula::scene::{
-    Background, Camera, Light, LightKind, Material, Mesh, Node, Primitive, Projection, Scene, Topology, View, framing,
+    Background, Camera, Light, LightKind, Material, Mesh, MetalFresnel, Node, Primitive, Projection, Scene, Topology,
+    View, framing,
 };
 use std::time::Instant;
 
@@ -44,6 +45,19 @@ fn main() -> Result<()> {
             ],
         )?;
     }
+    let wanted = Wanted { side: 1024, samples: 1, rounds };
+    compare(
+        &gpu,
+        wanted,
+        Sight::Near,
+        &[
+            ("32 sheets, listed front to back", sheets(Order::FrontToBack, 1)),
+            ("32 sheets, listed back to front", sheets(Order::BackToFront, 1)),
+            ("the same, of 32 materials with 6 pipelines", sheets(Order::BackToFront, 32)),
+        ],
+    )?;
+    let small = [("1 000 meshes of one material", mixture(1)), ("1 000 meshes of 6 pipelines", mixture(6))];
+    compare(&gpu, wanted, Sight::Near, &small)?;
     for count in [10_000, 100_000] {
         let wanted = Wanted { side: 1024, samples: 1, rounds: rounds.min(9) };
         let name = format!("{count} instances of 100 triangles");
@@ -152,6 +166,54 @@ fn crowd(visible: usize, hidden: usize, kind: Kind) -> Scene {
     scene
 }
 
+#[derive(Clone, Copy, PartialEq)]
+enum Order {
+    FrontToBack,
+    BackToFront,
+}
+
+/// Patches that fill the picture, one behind the other, of so many materials with as many pipelines as [`material`] has.
+fn sheets(order: Order, materials: usize) -> Scene {
+    let mut scene = Scene { meshes: Vec::new(), ..lit() };
+    of_materials(&mut scene, materials);
+    for i in 0..32 {
+        let depth = if order == Order::FrontToBack { i } else { 31 - i };
+        // Materials in an order of their own.
+        push(&mut scene, i * 13 % materials, DVec3::NEG_Z * depth as f64, 50.0);
+    }
+    scene
+}
+
+/// A thousand small meshes beside each other, no two the same, of so many materials.
+fn mixture(materials: usize) -> Scene {
+    let mut scene = Scene { meshes: Vec::new(), ..lit() };
+    of_materials(&mut scene, materials);
+    for i in 0..1000 {
+        let place = DVec3::new((i % 32) as f64 - 16.0, (i / 32) as f64 - 16.0, (i * 7 % 13) as f64 * 0.01) * 0.28;
+        let shape = patch(&[(1.0 + 1e-4 * i as f32, Vec3::ZERO)]);
+        let primitives = vec![Primitive { material: i % materials, ..shape }];
+        let mesh = scene.meshes.len();
+        scene.meshes.push(Mesh { name: None, primitives });
+        push(&mut scene, mesh, place, 0.25);
+    }
+    scene
+}
+
+/// Replaces the materials by so many, with a mesh of one patch for each.
+fn of_materials(scene: &mut Scene, count: usize) {
+    scene.materials = (0..count).map(material).collect();
+    let mesh = |material| vec![Primitive { material, ..patch(&[(1.0, Vec3::ZERO)]) }];
+    scene.meshes = (0..count).map(|material| Mesh { name: None, primitives: mesh(material) }).collect();
+}
+
+/// Materials of six pipelines, in turn.
+fn material(index: usize) -> Material {
+    let (n, k, a) = (Vec3::ONE, Vec3::ONE, Vec3::ONE);
+    let curves = [MetalFresnel::Schlick, MetalFresnel::Lazanyi { a }, MetalFresnel::Conductor { n, k, a }];
+    let (metal_fresnel, double_sided) = (curves[index % 3], index / 3 % 2 == 1);
+    Material { metallic: 0.5 + 0.01 * (index % 50) as f32, metal_fresnel, double_sided, ..Default::default() }
+}
+
 /// `count` patches that fill a square of one unit: each an instance, or all one mesh.
 fn field(count: usize, one_mesh: bool) -> Scene {
     let mut scene = lit();
@@ -159,7 +221,8 @@ fn field(count: usize, one_mesh: bool) -> Scene {
     let size = 0.9 / across as f64;
     let place = |i: usize| {
         let [x, y] = [i % across, i / across].map(|step| (step as f64 + 0.5) / across as f64 - 0.5);
-        DVec3::new(x, y, 0.01 * (i % 17) as f64)
+        // Away from the camera, so that none leaves the picture.
+        DVec3::new(x, y, -0.01 * (i % 17) as f64)
     };
     if one_mesh {
         let places: Vec<(f32, Vec3)> = (0..count).map(|i| (size as f32, place(i).as_vec3())).collect();
