@@ -264,6 +264,46 @@ mod tests {
         assert_eq!(seen(&view, &at(0.0, 0.05, 0.01), 8), [Seen::Perhaps]);
     }
 
+    /// Where float32 puts a point of the picture, px; `None` where it is clipped.
+    fn pixel(clip: Mat4, point: Vec3, size_px: UVec2) -> Option<DVec2> {
+        let clip = (clip * point.extend(1.0)).as_dvec4();
+        let inside =
+            clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && (0.0..=clip.w).contains(&clip.z);
+        let ndc = DVec2::new(clip.x, -clip.y) / clip.w;
+        inside.then(|| 0.5 * (ndc + 1.0) * size_px.as_dvec2())
+    }
+
+    #[test]
+    fn no_point_of_a_culled_box_is_seen_and_few_boxes_are_kept_for_nothing() {
+        let noise = |i: u32, salt: u32| {
+            let mixed = (i.wrapping_mul(0x9E37_79B9) ^ salt.wrapping_mul(0x85EB_CA6B)).wrapping_mul(0xC2B2_AE35);
+            f64::from((mixed ^ mixed >> 15).wrapping_mul(0x27D4_EB2F) >> 8) / f64::from(1 << 23) - 1.0
+        };
+        let vector = |i, salt| DVec3::new(noise(i, salt), noise(i, salt + 1), noise(i, salt + 2));
+        for projection in [Projection::Perspective { fov_y_rad: 0.9 }, Projection::Orthographic { height_m: 10.0 }] {
+            let view = view(projection);
+            let places: Vec<(DVec3, f64)> =
+                (0..4000).map(|i| (vector(i, 1) * 12.0, 10.0_f64.powf(2.0 * noise(i, 7) - 2.0))).collect();
+            let (boxes, clip) = (boxes(&places), clip_from_origin(&view, DVec3::ZERO));
+            let (mut culled, mut kept_for_nothing) = (0, 0);
+            for (i, seen) in (0..).zip(seen(&view, &boxes, 1)) {
+                let (center, half) = places[i as usize];
+                let point = |k: u32| (center + vector(i * 64 + k, 11) * half).as_vec3();
+                let pixels: Vec<DVec2> = (0..64).filter_map(|k| pixel(clip, point(k), view.size_px)).collect();
+                let low = pixels.iter().fold(DVec2::INFINITY, |low, &pixel| low.min(pixel));
+                let high = pixels.iter().fold(DVec2::NEG_INFINITY, |high, &pixel| high.max(pixel));
+                let has_sample = (low - 0.5).ceil().cmple((high - 0.5).floor()).all();
+                culled += u32::from(seen != Seen::Perhaps);
+                match seen {
+                    Seen::Outside => assert!(pixels.is_empty(), "{projection:?}: box {i} is at {low}"),
+                    Seen::BetweenSamples => assert!(!has_sample, "{projection:?}: box {i} from {low} to {high}"),
+                    Seen::Perhaps => kept_for_nothing += u32::from(!has_sample),
+                }
+            }
+            assert!(culled > 2000 && kept_for_nothing < 400, "{projection:?}: {culled}, {kept_for_nothing}");
+        }
+    }
+
     #[test]
     fn infinite_boxes_and_boxes_around_the_eye_are_kept() {
         let mut boxes = boxes(&[(DVec3::Z * 10.0, 1.0), (DVec3::ZERO, 1e6)]);

@@ -58,7 +58,7 @@ impl Culled {
 pub struct FramePlan {
     /// Distinct and sorted: those of all drawables, so that turning the camera compiles nothing.
     pub pipelines: Vec<PipelineKey>,
-    /// By pipeline, then front to back, and the instances of each front to back.
+    /// Front to back, and the instances of each front to back.
     pub opaque: Vec<Draw>,
     /// Whether the panorama is drawn behind the opaque surfaces.
     pub panorama: bool,
@@ -242,12 +242,13 @@ impl Planner {
         }
     }
 
-    /// By pipeline, then by the depth of the middle of all that a drawable has: what is culled does not change the order,
-    /// and so not which of two surfaces at the very same depth is seen.
+    /// By the depth of the middle of all that a drawable has: what is culled does not change the order, and so not which of
+    /// two surfaces at the very same depth is seen. Pipelines decide among equals only: what a change of pipeline costs is
+    /// little beside pixels that are shaded in vain (docs/performance.md).
     fn sort_opaque(&self, drawables: &Drawables, forward: Vec3, plan: &mut FramePlan) {
         let depth = |draw: &Draw| forward.dot(drawables.draws[draw.drawable].bounds.0);
         plan.opaque.sort_unstable_by(|a, b| {
-            let order = a.pipeline.cmp(&b.pipeline).then(depth(a).total_cmp(&depth(b)));
+            let order = depth(a).total_cmp(&depth(b)).then(a.pipeline.cmp(&b.pipeline));
             order.then(a.drawable.cmp(&b.drawable))
         });
     }
