@@ -4,6 +4,9 @@
 
 #![expect(clippy::print_stdout, reason = "the figures are the output")]
 
+mod clock;
+
+use clock::{cpu_seconds, median};
 use specula::bake::environment::{BakeOptions, bake};
 use specula::bake::sun;
 use specula::cache::{DEFAULT_LIMIT_BYTES, EnvironmentCache};
@@ -38,8 +41,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             std::fs::remove_dir_all(&folder)?;
         }
         let wall =
-            |costs: &[Cost]| 100.0 * median(costs, |cost| Some(cost.wall)) / median(&whole, |cost| Some(cost.wall));
-        let cpu = 100.0 * median(&suns, |cost| cost.cpu) / median(&whole, |cost| cost.cpu);
+            |costs: &[Cost]| 100.0 * middle(costs, |cost| Some(cost.wall)) / middle(&whole, |cost| Some(cost.wall));
+        let cpu = 100.0 * middle(&suns, |cost| cost.cpu) / middle(&whole, |cost| cost.cpu);
         println!("| {path} | {cpu:.1} % | {:.1} % | {:.1} % | {:.1} % |", wall(&suns), wall(&cold), wall(&warm));
     }
     Ok(())
@@ -52,19 +55,6 @@ fn cost(work: impl FnOnce()) -> Cost {
     Cost { wall, cpu: cpu_seconds().zip(cpu).map(|(after, before)| after - before) }
 }
 
-/// CPU time of all threads of this process so far, on Linux.
-fn cpu_seconds() -> Option<f64> {
-    let mut nanoseconds = 0.0;
-    for task in std::fs::read_dir("/proc/self/task").ok()? {
-        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
-        nanoseconds += text.split_whitespace().next()?.parse::<f64>().ok()?;
-    }
-    Some(nanoseconds * 1e-9)
-}
-
-/// NaN where something is not known.
-fn median(costs: &[Cost], value: impl Fn(&Cost) -> Option<f64>) -> f64 {
-    let mut values: Vec<f64> = costs.iter().map(|cost| value(cost).unwrap_or(f64::NAN)).collect();
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
+fn middle(costs: &[Cost], value: impl Fn(&Cost) -> Option<f64>) -> f64 {
+    median(costs.iter().map(value))
 }

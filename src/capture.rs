@@ -5,10 +5,10 @@ use crate::gpu::formats::{self, Precision};
 use crate::gpu::{Gpu, GpuError, Readback, read_texel, read_texture};
 use crate::gpu_scene::GpuScene;
 use crate::passes::ForwardTarget;
-use crate::renderer::{FrameStats, RadianceTarget, RenderError, Renderer, SurfaceTarget};
+use crate::renderer::{FrameState, FrameStats, RadianceTarget, RenderError, Renderer, SurfaceTarget};
 use crate::scene::{RadianceImage, View};
 use glam::{UVec2, Vec4};
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Why there is no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -48,7 +48,11 @@ pub struct CaptureTarget {
     covered: OnceLock<wgpu::TextureView>,
     depth: wgpu::TextureView,
     radiance: wgpu::Texture,
+    radiance_view: wgpu::TextureView,
     display: wgpu::Texture,
+    display_view: wgpu::TextureView,
+    /// What frames into these textures have in common.
+    state: Mutex<FrameState>,
 }
 
 impl CaptureTarget {
@@ -59,30 +63,54 @@ impl CaptureTarget {
         let size = wgpu::Extent3d { width: view.size_px.x, height: view.size_px.y, depth_or_array_layers: 1 };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let readable = attachment | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
-        let depth = texture(gpu, size, ("depth", formats::DEPTH, samples), attachment);
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
+        let radiance = texture(gpu, size, ("radiance", format, 1), readable);
+        let display = texture(gpu, size, ("display", formats::CAPTURED_DISPLAY, 1), readable);
         Ok(Self {
             options,
             size,
             multisampled: OnceLock::new(),
             visibility: OnceLock::new(),
             covered: OnceLock::new(),
-            depth: depth.create_view(&Default::default()),
-            radiance: texture(gpu, size, ("radiance", format, 1), readable),
-            display: texture(gpu, size, ("display", formats::CAPTURED_DISPLAY, 1), readable),
+            depth: view(&texture(gpu, size, ("depth", formats::DEPTH, samples), attachment)),
+            radiance_view: view(&radiance),
+            radiance,
+            display_view: view(&display),
+            display,
+            state: Mutex::default(),
         })
     }
 
-    /// What surfaces are drawn into, of which only the path that is taken has textures.
-    fn surfaces<'a>(&'a self, gpu: &Gpu, path: RenderPath, radiance: &'a wgpu::TextureView) -> SurfaceTarget<'a> {
+    /// Of the frames drawn so far.
+    pub fn state(&self) -> MutexGuard<'_, FrameState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What a frame is drawn into, or one pixel of it. Only the path that is taken has textures.
+    fn attachments(
+        &self,
+        gpu: &Gpu,
+        (renderer, scene, view): (&Renderer, &GpuScene, &View),
+        pixel: Option<UVec2>,
+    ) -> RadianceTarget<'_> {
+        let forward_target = self.forward_target();
+        // One pixel is not worth passes over all.
+        let path = if pixel.is_some() { RenderPath::Forward } else { renderer.path(scene, view, forward_target) };
+        let surfaces = self.surfaces(gpu, path);
+        let ForwardTarget { format, samples } = forward_target;
+        RadianceTarget { format, samples, surfaces, depth: &self.depth, pixel }
+    }
+
+    fn surfaces(&self, gpu: &Gpu, path: RenderPath) -> SurfaceTarget<'_> {
         let CaptureOptions { samples, precision } = self.options;
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let view = |what, usage| texture(gpu, self.size, what, usage).create_view(&Default::default());
         match path {
-            RenderPath::Forward if samples == 1 => SurfaceTarget::Forward { color: radiance, resolve: None },
+            RenderPath::Forward if samples == 1 => SurfaceTarget::Forward { color: &self.radiance_view, resolve: None },
             RenderPath::Forward => {
                 let what = ("multisampled radiance", precision.hdr_format(), samples);
                 let color = self.multisampled.get_or_init(|| view(what, attachment));
-                SurfaceTarget::Forward { color, resolve: Some(radiance) }
+                SurfaceTarget::Forward { color, resolve: Some(&self.radiance_view) }
             }
             RenderPath::Deferred => {
                 let read = attachment | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -90,7 +118,7 @@ impl CaptureTarget {
                 SurfaceTarget::Deferred {
                     visibility: self.visibility.get_or_init(visibility),
                     covered: self.covered.get_or_init(|| view(("covered", formats::DEPTH, 1), attachment)),
-                    color: radiance,
+                    color: &self.radiance_view,
                 }
             }
         }
@@ -186,19 +214,33 @@ fn record_part(
     target: &CaptureTarget,
     (display, pixel): (bool, Option<UVec2>),
 ) -> Result<FrameStats, CaptureError> {
-    let radiance = target.radiance.create_view(&Default::default());
-    let ForwardTarget { format, samples } = target.forward_target();
-    // One pixel is not worth a pass over all.
-    let path = if pixel.is_some() { RenderPath::Forward } else { renderer.path(scene, view, target.forward_target()) };
-    let surfaces = target.surfaces(gpu, path, &radiance);
-    let attachments = RadianceTarget { format, samples, surfaces, depth: &target.depth, pixel };
-    let stats = renderer.encode_radiance(&gpu.device, &gpu.queue, encoder, scene, view, &attachments)?;
+    let attachments = target.attachments(gpu, (renderer, scene, view), pixel);
+    let (gpu, mut state) = ((&gpu.device, &gpu.queue), target.state());
+    let stats = renderer.encode_radiance(gpu, encoder, scene, view, &attachments, &mut state)?;
     if display {
-        let display = target.display.create_view(&Default::default());
-        let display = (&display, formats::CAPTURED_DISPLAY);
-        renderer.encode_display(&gpu.device, encoder, view, &radiance, display)?;
+        let display = (&target.display_view, formats::CAPTURED_DISPLAY);
+        renderer.encode_display(gpu, encoder, view, &target.radiance_view, display, &mut state)?;
     }
     Ok(stats)
+}
+
+/// One turn of a render loop: draws the view into the target and displays it there, unless that is what the target shows
+/// already. Then nothing is recorded, submitted or allocated, and the answer is `None`.
+pub fn redraw(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    scene: &mut GpuScene,
+    view: &View,
+    target: &CaptureTarget,
+) -> Result<Option<FrameStats>, CaptureError> {
+    let attachments = target.attachments(gpu, (renderer, scene, view), None);
+    if renderer.is_current(&target.state(), scene, view, &attachments, Some(&target.display_view)) {
+        return Ok(None);
+    }
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+    let stats = record(gpu, renderer, &mut encoder, scene, view, target, true)?;
+    gpu.queue.submit([encoder.finish()]);
+    Ok(Some(stats))
 }
 
 /// Draws one frame and starts its way back.

@@ -3,8 +3,11 @@
 //! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
 //! caller's encoder.
 
+mod frame_state;
+mod target;
+
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
-use crate::frame::{FramePlan, RenderPath, are_small, plan};
+use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, clip_from_origin, plan};
 use crate::gpu::formats::{self, Precision};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
 use crate::math::color::linear_from_srgb;
@@ -12,11 +15,14 @@ use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
     ForwardPipelines, ForwardTarget, draw,
 };
-use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
+use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, Topology, View};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
 use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
-use glam::{DMat3, DVec2, DVec3, DVec4, UVec2};
-use wgpu::util::DeviceExt;
+use glam::{DMat3, DVec2, DVec3, DVec4};
+use std::sync::Arc;
+
+pub use frame_state::FrameState;
+pub use target::{RadianceTarget, SurfaceTarget};
 
 /// Why a frame could not be recorded.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -26,10 +32,25 @@ pub enum RenderError {
     Upload(#[from] UploadError),
     #[error("a shader of this version is broken, please report it: {0}")]
     Shader(#[from] ShaderError),
-    #[error("the picture is {width} x {height} pixels; both must be between 1 and {allowed}")]
-    Size { width: u32, height: u32, allowed: u32 },
     #[error("this frame cannot be shaded in a pass of its own; Renderer::path says which can")]
     NotDeferrable,
+    #[error("the picture is {width} x {height} pixels; both must be between 1 and {allowed}")]
+    Size { width: u32, height: u32, allowed: u32 },
+}
+
+/// What a recorded frame consists of.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FrameStats {
+    pub path: RenderPath,
+    /// Draw calls.
+    pub draws: u32,
+    pub triangles: u64,
+    /// Names of the distinct forward pipelines, sorted.
+    pub pipelines: Arc<[String]>,
+    /// Distinct primitives, and why some are not drawn.
+    pub drawables: Culled,
+    /// Primitives at their places.
+    pub placements: Culled,
 }
 
 /// Which paths a renderer may take from triangles to radiance.
@@ -44,47 +65,6 @@ pub enum PathChoice {
     Deferred,
 }
 
-/// Where the radiance of a frame goes. All views have the size of the [`View`].
-#[derive(Debug, Clone, Copy)]
-pub struct RadianceTarget<'a> {
-    pub format: wgpu::TextureFormat,
-    pub samples: u32,
-    pub surfaces: SurfaceTarget<'a>,
-    /// In [`formats::DEPTH`], with the same number of samples.
-    pub depth: &'a wgpu::TextureView,
-    /// The only pixel that is drawn, from the top left; inside of the picture. `None` draws all.
-    pub pixel: Option<UVec2>,
-}
-
-/// What surfaces are drawn into on the path of a frame ([`Renderer::path`]).
-#[derive(Debug, Clone, Copy)]
-pub enum SurfaceTarget<'a> {
-    Forward {
-        /// Multisampled when `samples > 1`.
-        color: &'a wgpu::TextureView,
-        /// Given exactly when `samples > 1`.
-        resolve: Option<&'a wgpu::TextureView>,
-    },
-    Deferred {
-        /// In [`formats::VISIBILITY`], with as many samples as the depth, to be read by shaders.
-        visibility: &'a wgpu::TextureView,
-        /// In [`formats::DEPTH`], one sample a pixel.
-        covered: &'a wgpu::TextureView,
-        /// One sample a pixel.
-        color: &'a wgpu::TextureView,
-    },
-}
-
-/// What a recorded frame consists of.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct FrameStats {
-    pub path: RenderPath,
-    pub draws: u32,
-    pub triangles: u64,
-    /// Names of the distinct forward pipelines, sorted.
-    pub pipelines: Vec<String>,
-}
-
 /// Pipelines and tables for one device.
 #[derive(Debug)]
 pub struct Renderer {
@@ -96,6 +76,8 @@ pub struct Renderer {
     deferred: DeferredPipelines,
     background: BackgroundPipeline,
     display: DisplayPipelines,
+    /// `Off` draws the same pictures with more work.
+    pub culling: Culling,
 }
 
 impl Renderer {
@@ -114,6 +96,7 @@ impl Renderer {
             deferred: DeferredPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
+            culling: Culling::On,
         }
     }
 
@@ -133,9 +116,10 @@ impl Renderer {
         let blends = target.format != Precision::Float.hdr_format() || self.blends_float;
         // A channel asks for neighbours in the picture.
         let can = scene.pulled.is_some() && view.channel.is_none() && blends;
+        let triangles = |drawable: usize| scene.draws[drawable].primitive.indices.len() as u64 / 3;
         let is_deferred = match self.path {
             PathChoice::Forward => false,
-            PathChoice::Faster => can && are_small(scene.triangles(), &scene.bounds_in_world, view, target.samples),
+            PathChoice::Faster => can && are_small(&scene.drawables, view, target.samples, triangles),
             PathChoice::Deferred => can,
         };
         if is_deferred { RenderPath::Deferred } else { RenderPath::Forward }
@@ -156,7 +140,7 @@ impl Renderer {
         Ok(uploaded)
     }
 
-    /// Makes the pipelines that this view needs, so that [`Self::encode_radiance`] compiles little.
+    /// Makes the pipelines that this view needs on the forward path, so that [`Self::encode_radiance`] compiles nothing.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -164,96 +148,124 @@ impl Renderer {
         view: &View,
         target: ForwardTarget,
     ) -> Result<FramePlan, RenderError> {
-        let plan = plan(&scene.drawables, scene.features, view);
-        if self.path(scene, view, target) == RenderPath::Deferred {
-            return Ok(plan);
+        let options = PlanOptions { samples: target.samples, culling: self.culling };
+        let plan = plan(&scene.drawables, scene.features, view, options);
+        if self.path(scene, view, target) == RenderPath::Forward {
+            self.forward.prepare(device, &self.sources, scene, &plan, target)?;
         }
-        self.forward.prepare(device, &self.sources, scene, &plan, target)?;
         Ok(plan)
+    }
+
+    /// Whether the last frame recorded with `state` has left in the targets what recording this one would: then nothing
+    /// needs to be recorded, and asking has cost no allocation. `display` is where the radiance is displayed, if it is.
+    pub fn is_current(
+        &self,
+        state: &FrameState,
+        scene: &GpuScene,
+        view: &View,
+        target: &RadianceTarget<'_>,
+        display: Option<&wgpu::TextureView>,
+    ) -> bool {
+        let radiance = target.surfaces.radiance();
+        state.shows(scene, view, self.culling, target)
+            && display.is_none_or(|display| state.displays(view, radiance, display))
     }
 
     /// Records the forward pass: linear radiance, multiplied with coverage.
     pub fn encode_radiance(
         &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         encoder: &mut wgpu::CommandEncoder,
         scene: &mut GpuScene,
         view: &View,
         target: &RadianceTarget<'_>,
+        state: &mut FrameState,
     ) -> Result<FrameStats, RenderError> {
         check_size(device, view)?;
         let forward_target = ForwardTarget { format: target.format, samples: target.samples };
-        let plan = self.prepare(device, scene, view, forward_target)?;
-        let panorama = self.panorama(device, queue, scene, (view, &plan), target)?;
-        let frame = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("frame"),
-            contents: bytemuck::bytes_of(&frame_uniform(scene, view)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let frame_group = scene.frame_group(device, &self.shared, &frame);
+        let options = PlanOptions { samples: target.samples, culling: self.culling };
+        let visible = state.plan_frame((device, queue), scene, view, options);
+        let panorama = self.panorama((device, queue), scene, view, target, state)?;
+        let uniform = frame_uniform(scene, view);
+        let frame_group = state.frame.group(
+            (device, queue),
+            "frame",
+            bytemuck::bytes_of(&uniform),
+            (scene.instances.clone(), visible),
+            |frame, (_, visible)| scene.frame_group(device, &self.shared, (frame, visible)),
+        );
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
             1.0
         } else {
             0.0
         };
-        if let SurfaceTarget::Deferred { visibility, covered, color: radiance } = target.surfaces {
-            let ForwardTarget { format, samples } = forward_target;
-            let (depth, size_px) = (target.depth, view.size_px);
+        let path = if let SurfaceTarget::Deferred { visibility, covered, color: radiance } = target.surfaces {
+            let (ForwardTarget { format, samples }, depth, size_px) = (forward_target, target.depth, view.size_px);
             let into = DeferredTarget { format, samples, visibility, depth, covered, radiance, size_px, coverage };
             let (Some(geometry), None) = (&scene.pulled, target.pixel) else { return Err(RenderError::NotDeferrable) };
-            let pass = self.deferred.prepare(device, &self.sources, (scene, geometry), (&plan, view), &into)?;
+            let (plan, kept) = ((&state.plan, view), &mut state.deferred);
+            let pass = self.deferred.prepare(device, &self.sources, (scene, geometry), plan, &into, kept)?;
             pass.encode(encoder, scene, &frame_group, &into, |pass| {
                 if let Some(panorama) = &panorama {
                     panorama.draw(pass, true);
                 }
             });
-            return Ok(FrameStats { path: RenderPath::Deferred, ..frame_stats(scene, &plan) });
-        }
-        let mut pass = begin_forward(encoder, target, f64::from(coverage));
-        if let Some(pixel) = target.pixel {
-            pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
-        }
-        draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.opaque);
-        if let Some(panorama) = &panorama {
-            panorama.draw(&mut pass, false);
-        }
-        draw(&mut pass, &self.forward, forward_target, scene, &frame_group, &plan, &plan.blended);
-        Ok(frame_stats(scene, &plan))
+            RenderPath::Deferred
+        } else {
+            self.forward.prepare(device, &self.sources, scene, &state.plan, forward_target)?;
+            let mut pass = begin_forward(encoder, target, f64::from(coverage));
+            if let Some(pixel) = target.pixel {
+                pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
+            }
+            let pipelines = self.forward.of_plan(&state.plan, forward_target);
+            draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.opaque);
+            if let Some(panorama) = &panorama {
+                panorama.draw(&mut pass, false);
+            }
+            draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.blended);
+            RenderPath::Forward
+        };
+        state.was_drawn(scene, view, self.culling, target);
+        Ok(FrameStats { path, ..frame_stats(scene, state) })
     }
 
     /// The panorama of the frame, where it has one.
     fn panorama(
         &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         scene: &mut GpuScene,
-        (view, plan): (&View, &FramePlan),
+        view: &View,
         target: &RadianceTarget<'_>,
+        state: &mut FrameState,
     ) -> Result<Option<BackgroundPass>, RenderError> {
-        let (Some(environment), true) = (&mut scene.environment, plan.panorama) else { return Ok(None) };
+        let (Some(environment), true) = (&mut scene.environment, state.plan.panorama) else { return Ok(None) };
         let panorama = environment.panorama(device, queue)?;
         let radiance_scale = environment.intensity * panorama.scale;
         let uniform = background_uniform(&view.camera, view, environment.environment_from_world, radiance_scale);
         let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
         let samples = if under { 1 } else { target.samples };
         let into = BackgroundTarget { format: target.format, samples, under };
-        Ok(Some(self.background.prepare(device, &self.sources, into, &panorama, &uniform)?))
+        let uniform = (&uniform, &mut state.background);
+        Ok(Some(self.background.prepare((device, queue), &self.sources, into, &panorama, uniform)?))
     }
 
     /// Records exposure, tone map and sRGB from `radiance` into `target`.
     pub fn encode_display(
         &mut self,
-        device: &wgpu::Device,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         encoder: &mut wgpu::CommandEncoder,
         view: &View,
         radiance: &wgpu::TextureView,
         (target, format): (&wgpu::TextureView, wgpu::TextureFormat),
+        state: &mut FrameState,
     ) -> Result<(), RenderError> {
         let features = DisplayFeatures { tone_map: view.tone_map, encode_srgb: !formats::encodes_srgb(format) };
-        let pass = self.display.prepare(device, &self.sources, features, format, radiance, &display_uniform(view))?;
+        let uniform = display_uniform(view);
+        let uniform = (&uniform, &mut state.display);
+        let pass = self.display.prepare((device, queue), &self.sources, features, format, radiance, uniform)?;
         pass.encode(encoder, target);
+        state.was_displayed(view, radiance, target);
         Ok(())
     }
 
@@ -297,17 +309,14 @@ pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> Sha
 }
 
 fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
-    let mut camera = view.camera.clone();
-    let eye = camera.position_in_world() - scene.origin_in_world;
-    camera.world_from_view.w_axis = eye.extend(1.0);
-    let clip_from_view = camera.clip_from_view(view.size_px).as_dmat4();
-    let viewer: DVec4 = match camera.projection {
-        Projection::Perspective { .. } => eye.extend(1.0),
-        Projection::Orthographic { .. } => (-camera.forward_in_world()).extend(0.0),
+    let origin_in_world = scene.drawables.origin_in_world;
+    let viewer: DVec4 = match view.camera.projection {
+        Projection::Perspective { .. } => (view.camera.position_in_world() - origin_in_world).extend(1.0),
+        Projection::Orthographic { .. } => (-view.camera.forward_in_world()).extend(0.0),
     };
     let [channel, channel_index, channel_components] = view.channel.map_or([0; 3], channel_uniform);
     FrameUniform {
-        clip_from_world: (clip_from_view * camera.world_from_view.inverse()).as_mat4().to_cols_array_2d(),
+        clip_from_world: clip_from_origin(view, origin_in_world).to_cols_array_2d(),
         viewer: viewer.as_vec4().to_array(),
         light_count: scene.light_count,
         channel,
@@ -382,17 +391,20 @@ fn begin_forward<'encoder>(
     })
 }
 
-fn frame_stats(scene: &GpuScene, plan: &FramePlan) -> FrameStats {
-    let drawn = plan.opaque.iter().chain(&plan.blended).map(|draw| &scene.drawables.draws[draw.drawable]);
-    let triangles = drawn.clone().filter(|drawable| drawable.topology == crate::scene::Topology::Triangles);
-    let count = |drawable: &crate::frame::Drawable| {
-        let indices = scene.primitives.get(&(drawable.mesh, drawable.primitive)).map_or(0, |p| p.indices.len());
-        (indices / 3 * drawable.instances.len()) as u64
+fn frame_stats(scene: &GpuScene, state: &FrameState) -> FrameStats {
+    let plan = &state.plan;
+    let drawn = || plan.opaque.iter().chain(&plan.blended);
+    let of_triangles = |draw: &&Draw| scene.drawables.draws[draw.drawable].topology == Topology::Triangles;
+    let triangles = |draw: &Draw| {
+        let indices = scene.draws[draw.drawable].primitive.indices.len();
+        indices as u64 / 3 * draw.instances.len() as u64
     };
     FrameStats {
         path: RenderPath::Forward,
-        draws: drawn.count() as u32,
-        triangles: triangles.map(count).sum(),
-        pipelines: plan.pipelines.iter().map(|key| key.features.to_string()).collect(),
+        draws: drawn().count() as u32,
+        triangles: drawn().filter(of_triangles).map(triangles).sum(),
+        pipelines: Arc::clone(&state.pipeline_names),
+        drawables: plan.drawables,
+        placements: plan.placements,
     }
 }

@@ -6,7 +6,7 @@ use super::environment::{CacheUse, bake_maps};
 use super::error::CliError;
 use super::output::{self, Format};
 use super::progress::StderrProgress;
-use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
+use super::stats::{AdapterStats, CulledStats, GpuStats, RenderStats, Stopwatch};
 use super::subject::SubjectArgs;
 use super::tier::{TierArgs, TierStats};
 use super::truth::TruthArgs;
@@ -222,7 +222,9 @@ fn draw(
             path: stats.path.name(),
             draws: stats.draws,
             triangles: stats.triangles,
-            pipelines: stats.pipelines,
+            pipelines: stats.pipelines.to_vec(),
+            drawables: CulledStats::of(stats.drawables),
+            placements: CulledStats::of(stats.placements),
             geometry_bytes: uploaded.bytes.geometry,
             texture_bytes: uploaded.bytes.textures,
             environment_bytes: uploaded.bytes.environment,

@@ -1,6 +1,7 @@
 //! What a render did, for `--stats` and `--json`.
 
 use super::tier::TierStats;
+use crate::frame::Culled;
 use crate::gpu::Gpu;
 use serde::Serialize;
 use std::time::Instant;
@@ -57,6 +58,10 @@ pub(super) struct GpuStats {
     pub(super) triangles: u64,
     /// The features of each distinct forward pipeline.
     pub(super) pipelines: Vec<String>,
+    /// Distinct primitives.
+    pub(super) drawables: CulledStats,
+    /// Primitives at their places.
+    pub(super) placements: CulledStats,
     pub(super) geometry_bytes: u64,
     pub(super) texture_bytes: u64,
     pub(super) environment_bytes: u64,
@@ -65,6 +70,24 @@ pub(super) struct GpuStats {
     pub(super) environment: bool,
     /// Where its maps have come from: `hit` (a file), `stored`, `off` or `unavailable` (they were baked). None without one.
     pub(super) environment_cache: Option<&'static str>,
+}
+
+/// How many of a number of things are drawn, and why the others are not.
+#[derive(Debug, Serialize)]
+pub(super) struct CulledStats {
+    pub(super) all: u32,
+    pub(super) drawn: u32,
+    /// Beside the picture, before the near plane or beyond the far one.
+    pub(super) outside: u32,
+    /// So small that no sample of a pixel can see them.
+    pub(super) between_samples: u32,
+}
+
+impl CulledStats {
+    pub(super) fn of(culled: Culled) -> Self {
+        let Culled { all, outside, between_samples } = culled;
+        Self { all, drawn: culled.drawn(), outside, between_samples }
+    }
 }
 
 /// The time that one stage took.

@@ -1,8 +1,10 @@
 //! The draws that a scene can need, before any view is known.
 
+use super::boxes::Boxes;
+use super::identity::{PrimitivePlace, first_of_same};
 use crate::scene::{Bounds, Instance, Primitive, Scene, Topology};
 use crate::shader::{Alpha, MaterialFeatures, SceneFeatures, VertexFeatures};
-use glam::DVec3;
+use glam::{DMat4, DVec3, Vec3};
 use std::ops::Range;
 
 /// A mesh instance, with whether its transform mirrors it.
@@ -12,9 +14,10 @@ pub struct PlacedInstance {
     pub mirrored: bool,
 }
 
-/// One primitive with the instances that can be drawn in one call.
+/// One primitive wherever it is placed with one handedness: what can be drawn in one call.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawable {
+    /// The mesh and the primitive in it that the data are of: the first of those that are the same.
     pub mesh: usize,
     pub primitive: usize,
     pub material: usize,
@@ -22,44 +25,95 @@ pub struct Drawable {
     pub vertex_features: VertexFeatures,
     pub topology: Topology,
     pub mirrored: bool,
-    /// Range in [`Drawables::instances`].
-    pub instances: Range<u32>,
-    /// Centre of the first instance's bounds, in world space: the key for sorting by depth.
-    pub center_in_world: DVec3,
+    /// Range in [`Drawables::placements`].
+    pub placements: Range<usize>,
+    /// Centre and half extent of the box around all placements, around the scene's origin.
+    pub bounds: (Vec3, Vec3),
+}
+
+/// A primitive at each of its places, side by side: the instance that gives the transform, and the box.
+#[derive(Debug, Clone, Default)]
+pub struct Placements {
+    /// Indices into [`Drawables::instances`].
+    pub instances: Vec<u32>,
+    pub boxes: Boxes,
 }
 
 /// Everything that can be drawn of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Drawables {
-    /// Grouped by mesh and handedness, so that a drawable's instances are a range.
+    /// In the order of the scene.
     pub instances: Vec<PlacedInstance>,
+    /// By mesh, primitive and handedness.
     pub draws: Vec<Drawable>,
+    /// By drawable, then in the order of the scene.
+    pub placements: Placements,
+    /// Subtracted from every position before it becomes f32.
+    pub origin_in_world: DVec3,
+    first_of_same: Vec<Vec<PrimitivePlace>>,
+}
+
+/// A primitive that is drawn at an instance.
+#[derive(Clone, Copy)]
+struct Use {
+    place: PrimitivePlace,
+    mirrored: bool,
+    instance: u32,
 }
 
 impl Drawables {
-    /// Opaque primitives get one draw for all instances of a mesh; blended ones a draw each, to be sorted.
     pub fn new(scene: &Scene, features: SceneFeatures) -> Self {
-        let mut instances: Vec<PlacedInstance> = scene.instances().into_iter().map(place).collect();
-        instances.sort_by_key(|placed| (placed.instance.mesh, placed.mirrored));
-        let mut draws = Vec::new();
-        let mut start = 0;
-        for group in instances.chunk_by(|a, b| (a.instance.mesh, a.mirrored) == (b.instance.mesh, b.mirrored)) {
-            let range = start as u32..(start + group.len()) as u32;
-            start += group.len();
-            let mesh = group[0].instance.mesh;
-            for (index, primitive) in scene.meshes[mesh].primitives.iter().enumerate() {
-                if primitive.indices.is_empty() {
-                    continue;
-                }
-                let drawable = drawable(scene, features, mesh, index, primitive, group, range.clone());
-                if drawable.material_features.alpha == Alpha::Blend {
-                    draws.extend(one_by_one(&drawable, primitive, group));
-                } else {
-                    draws.push(drawable);
-                }
-            }
+        let instances: Vec<PlacedInstance> = scene.instances().into_iter().map(place).collect();
+        let bounds = scene.bounds();
+        let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
+        let first_of_same = first_of_same(scene);
+        let uses = uses(scene, &instances, &first_of_same);
+        let mut drawables =
+            Self { instances, draws: Vec::new(), placements: Placements::default(), origin_in_world, first_of_same };
+        for same in uses.chunk_by(|a, b| (a.place, a.mirrored) == (b.place, b.mirrored)) {
+            drawables.add(scene, features, same);
         }
-        Self { instances, draws }
+        drawables
+    }
+
+    /// What a primitive of a mesh is drawn as.
+    pub fn find(&self, (mesh, primitive): PrimitivePlace) -> Option<&Drawable> {
+        let first = *self.first_of_same.get(mesh)?.get(primitive)?;
+        self.draws.iter().find(|drawable| (drawable.mesh, drawable.primitive) == first)
+    }
+
+    /// Adds one drawable for all of `same`.
+    fn add(&mut self, scene: &Scene, features: SceneFeatures, same: &[Use]) {
+        let (mesh, index) = same[0].place;
+        let primitive = &scene.meshes[mesh].primitives[index];
+        let start = self.placements.instances.len();
+        let object = object_bounds(primitive);
+        let origin_from_world = DMat4::from_translation(-self.origin_in_world);
+        for &Use { instance, .. } in same {
+            let world_from_object = &self.instances[instance as usize].instance.world_from_object;
+            self.placements.instances.push(instance);
+            self.placements.boxes.push(&object, &(origin_from_world * *world_from_object));
+        }
+        let placements = start..self.placements.instances.len();
+        let material_features = MaterialFeatures::of(&scene.materials[primitive.material], primitive, scene, features);
+        self.draws.push(Drawable {
+            mesh,
+            primitive: index,
+            material: primitive.material,
+            material_features,
+            vertex_features: VertexFeatures::of(&material_features, primitive),
+            topology: primitive.topology,
+            mirrored: same[0].mirrored,
+            bounds: self.placements.boxes.union(placements.clone()),
+            placements,
+        });
+    }
+}
+
+impl Drawable {
+    /// Whether it is drawn back to front, over what is behind it.
+    pub fn is_blended(&self) -> bool {
+        self.material_features.alpha == Alpha::Blend
     }
 }
 
@@ -67,46 +121,23 @@ fn place(instance: Instance) -> PlacedInstance {
     PlacedInstance { instance, mirrored: instance.world_from_object.determinant() < 0.0 }
 }
 
-fn drawable(
-    scene: &Scene,
-    features: SceneFeatures,
-    mesh: usize,
-    index: usize,
-    primitive: &Primitive,
-    group: &[PlacedInstance],
-    instances: Range<u32>,
-) -> Drawable {
-    let material = &scene.materials[primitive.material];
-    let material_features = MaterialFeatures::of(material, primitive, scene, features);
-    Drawable {
-        mesh,
-        primitive: index,
-        material: primitive.material,
-        material_features,
-        vertex_features: VertexFeatures::of(&material_features, primitive),
-        topology: primitive.topology,
-        mirrored: group[0].mirrored,
-        instances,
-        center_in_world: center_in_world(primitive, &group[0].instance),
+/// Every primitive at every instance that has something to draw, those that are drawn together side by side.
+fn uses(scene: &Scene, instances: &[PlacedInstance], first_of_same: &[Vec<PrimitivePlace>]) -> Vec<Use> {
+    let mut uses = Vec::new();
+    for (index, placed) in (0..).zip(instances) {
+        let mesh = placed.instance.mesh;
+        let drawn = scene.meshes[mesh].primitives.iter().zip(&first_of_same[mesh]);
+        let drawn = drawn.filter(|(primitive, _)| !primitive.indices.is_empty());
+        uses.extend(drawn.map(|(_, &place)| Use { place, mirrored: placed.mirrored, instance: index }));
     }
+    uses.sort_by_key(|found| (found.place, found.mirrored));
+    uses
 }
 
-fn one_by_one<'a>(
-    drawable: &'a Drawable,
-    primitive: &'a Primitive,
-    group: &'a [PlacedInstance],
-) -> impl Iterator<Item = Drawable> + 'a {
-    drawable.instances.clone().zip(group).map(|(index, placed)| Drawable {
-        instances: index..index + 1,
-        center_in_world: center_in_world(primitive, &placed.instance),
-        ..drawable.clone()
-    })
-}
-
-fn center_in_world(primitive: &Primitive, instance: &Instance) -> DVec3 {
+fn object_bounds(primitive: &Primitive) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for position in &primitive.positions {
         bounds.grow(position.as_dvec3());
     }
-    instance.world_from_object.transform_point3(bounds.center())
+    bounds
 }

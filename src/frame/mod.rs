@@ -1,9 +1,18 @@
 //! What will be drawn, decided on the CPU from scene and view alone: printable, testable, no GPU.
 
+mod boxes;
+mod cull;
+mod depth_order;
 mod drawables;
+mod identity;
 mod path;
 mod plan;
+#[cfg(test)]
+mod tests;
 
-pub use drawables::{Drawable, Drawables, PlacedInstance};
+pub use boxes::Boxes;
+pub use cull::{Culling, clip_from_origin};
+pub use drawables::{Drawable, Drawables, PlacedInstance, Placements};
+pub use identity::PrimitivePlace;
 pub use path::{RenderPath, are_small, is_deferrable, rectangle_around};
-pub use plan::{Draw, FramePlan, PipelineKey, plan};
+pub use plan::{Culled, Draw, FramePlan, PipelineKey, PlanOptions, Planner, plan};

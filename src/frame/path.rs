@@ -1,9 +1,10 @@
 //! Whether surfaces are shaded as they are rasterised, or in a pass of their own when it is known which are seen.
 
-use super::Drawables;
-use crate::scene::{Bounds, Topology, View};
+use super::cull::clip_from_origin;
+use super::drawables::{Drawable, Drawables};
+use crate::scene::{Topology, View};
 use crate::shader::Alpha;
-use glam::{DVec2, UVec2};
+use glam::{Mat4, UVec2, Vec2, Vec3};
 
 /// The way from triangles to radiance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -33,43 +34,48 @@ const MAX_DRAWS: usize = 64;
 const SMALL_TRIANGLE_PX: f64 = 100.0;
 const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 300.0;
 
-/// Whether the deferred path can draw these: a few opaque draws of triangles, one instance each.
+/// Whether the deferred path can draw these: a few opaque draws of triangles, each at one place.
 pub fn is_deferrable(drawables: &Drawables) -> bool {
-    let fits = |drawable: &super::Drawable| {
+    let fits = |drawable: &Drawable| {
         drawable.material_features.alpha == Alpha::Opaque
             && drawable.topology == Topology::Triangles
-            && drawable.instances.len() == 1
+            && drawable.placements.len() == 1
     };
     (1..=MAX_DRAWS).contains(&drawables.draws.len()) && drawables.draws.iter().all(fits)
 }
 
-/// Whether `triangles` within `bounds_in_world` are small enough in a picture of `view` for the deferred path to pay.
-pub fn are_small(triangles: u64, bounds_in_world: &Bounds, view: &View, samples: u32) -> bool {
-    let limit = if samples > 1 { SMALL_TRIANGLE_MULTISAMPLED_PX } else { SMALL_TRIANGLE_PX };
-    pixels_within(bounds_in_world, view) < limit * triangles as f64
-}
-
-fn pixels_within(bounds: &Bounds, view: &View) -> f64 {
-    rectangle_around(bounds, view).map_or(0.0, |[_, size]| f64::from(size.x) * f64::from(size.y))
-}
-
-/// Corner and size, in pixels, of the part of the picture that a box can cover: the rectangle around its corners, or all
-/// of the picture where one is beside or behind the eye. None where it is out of sight.
-pub fn rectangle_around(bounds: &Bounds, view: &View) -> Option<[UVec2; 2]> {
-    let size = view.size_px.as_dvec2();
-    let clip_from_world = view.camera.clip_from_view(view.size_px).as_dmat4() * view.camera.world_from_view.inverse();
-    let (mut least, mut largest) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for corner in bounds.corners() {
-        let clip = clip_from_world * corner.extend(1.0);
-        if clip.w <= 0.0 {
-            return Some([UVec2::ZERO, view.size_px]);
+/// Whether triangles are small enough for the deferred path to pay, over all drawables; `triangles` says how many one has.
+pub fn are_small(drawables: &Drawables, view: &View, samples: u32, triangles: impl Fn(usize) -> u64) -> bool {
+    let clip = clip_from_origin(view, drawables.origin_in_world);
+    let (mut pixels, mut count) = (0.0, 0);
+    for (index, drawable) in drawables.draws.iter().enumerate() {
+        if let Some([_, size]) = rectangle_around(drawable.bounds, &clip, view.size_px) {
+            pixels += f64::from(size.x) * f64::from(size.y);
+            count += triangles(index);
         }
-        let pixel = (DVec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size;
+    }
+    let limit = if samples > 1 { SMALL_TRIANGLE_MULTISAMPLED_PX } else { SMALL_TRIANGLE_PX };
+    pixels < limit * count as f64
+}
+
+/// Corner and size, in pixels, of the part of the picture that a box can cover, given by its centre and half extent: the
+/// rectangle around its corners, or all of the picture where one is beside or behind the eye. None where it is out of
+/// sight.
+pub fn rectangle_around((center, half): (Vec3, Vec3), clip_from_origin: &Mat4, size_px: UVec2) -> Option<[UVec2; 2]> {
+    let (mut least, mut largest) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    for corner in 0..8 {
+        let sign = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        let clip = *clip_from_origin * (center + half * Vec3::new(sign(0), sign(1), sign(2))).extend(1.0);
+        if !clip.is_finite() || clip.w <= 0.0 {
+            return Some([UVec2::ZERO, size_px]);
+        }
+        let pixel = (Vec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size_px.as_vec2();
         (least, largest) = (least.min(pixel), largest.max(pixel));
     }
-    // Rasterisers move corners by fractions of a pixel.
-    let (first, last) = ((least - 1.0).floor().max(DVec2::ZERO), (largest + 1.0).ceil().min(size));
-    (first.cmplt(last).all()).then(|| [first.as_uvec2(), (last - first).as_uvec2()])
+    // A pixel of room for rounding, here and in the rasteriser.
+    let first = (least - 1.0).floor().max(Vec2::ZERO).min(size_px.as_vec2());
+    let last = (largest + 1.0).ceil().max(Vec2::ZERO).min(size_px.as_vec2());
+    first.cmplt(last).all().then(|| [first.as_uvec2(), (last - first).as_uvec2()])
 }
 
 #[cfg(test)]
@@ -77,7 +83,7 @@ mod tests {
     use super::*;
     use crate::scene::framing::default_view;
     use crate::scene::{Mesh, Node, Scene, shapes};
-    use glam::DVec3;
+    use crate::shader::SceneFeatures;
 
     fn sphere() -> Scene {
         Scene {
@@ -90,20 +96,32 @@ mod tests {
     }
 
     #[test]
-    fn the_rectangle_around_a_framed_sphere_is_most_of_the_picture() {
+    fn triangles_are_small_or_large_by_the_picture() {
         let scene = sphere();
-        let view = default_view(&scene, UVec2::new(300, 200));
-        let seen = pixels_within(&scene.bounds(), &view);
-        assert!((0.6 * 200.0 * 200.0..=300.0 * 200.0).contains(&seen), "{seen}");
-        assert!(are_small(8192, &scene.bounds(), &view, 1) && !are_small(100, &scene.bounds(), &view, 4));
+        let drawables = Drawables::new(&scene, SceneFeatures::of(&scene));
+        assert!(is_deferrable(&drawables));
+        // Some 8000 triangles.
+        let small = |side, samples| {
+            let view = default_view(&scene, UVec2::splat(side));
+            are_small(&drawables, &view, samples, |_| scene.meshes[0].primitives[0].indices.len() as u64 / 3)
+        };
+        assert!(small(512, 1) && small(512, 4) && !small(4096, 1) && !small(4096, 4));
+        assert!(!small(1400, 1) && small(1400, 4));
     }
 
     #[test]
-    fn around_the_eye_a_box_is_everywhere_and_behind_it_nowhere() {
-        let view = default_view(&sphere(), UVec2::new(30, 20));
-        let cube = |center: DVec3, half: f64| Bounds { min: center - half, max: center + half };
-        assert_eq!(pixels_within(&cube(DVec3::ZERO, 100.0), &view), 600.0);
-        let beside = view.camera.world_from_view.transform_point3(DVec3::new(1e3, 0.0, -10.0));
-        assert_eq!(rectangle_around(&cube(beside, 1.0), &view), None);
+    fn rectangles_hold_what_is_seen_of_a_box() {
+        let size = UVec2::new(300, 200);
+        let view = default_view(&sphere(), size);
+        let clip = clip_from_origin(&view, glam::DVec3::ZERO);
+        let all = Some([UVec2::ZERO, size]);
+        assert_eq!(rectangle_around((Vec3::ZERO, Vec3::splat(100.0)), &clip, size), all);
+        assert_eq!(rectangle_around((Vec3::ZERO, Vec3::INFINITY), &clip, size), all);
+        let Some([corner, side]) = rectangle_around((Vec3::ZERO, Vec3::splat(0.1)), &clip, size) else {
+            panic!("out of sight")
+        };
+        assert!(corner.cmpgt(UVec2::new(100, 60)).all() && (corner + side).cmplt(UVec2::new(200, 140)).all());
+        let beside = view.camera.world_from_view.transform_point3(glam::DVec3::new(1e3, 0.0, -10.0)).as_vec3();
+        assert_eq!(rectangle_around((beside, Vec3::ONE), &clip, size), None);
     }
 }

@@ -16,12 +16,14 @@ pub const FRAME_ENVIRONMENT: u32 = 5;
 pub const FRAME_ATLAS: u32 = 6;
 pub const FRAME_FRESNEL_TAIL: u32 = 7;
 pub const FRAME_TAPS: u32 = 8;
+pub const FRAME_VISIBLE: u32 = 11;
 
 /// Group 0 of the forward pass: what the scene's light needs is bound, the rest has no binding.
 pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
     let mut entries = vec![
         buffer(FRAME_UNIFORM, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform),
         buffer(FRAME_INSTANCES, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }),
+        buffer(FRAME_VISIBLE, ShaderStages::VERTEX, BufferBindingType::Storage { read_only: true }),
     ];
     if features.is_lit() {
         entries.extend([texture(FRAME_DFG, true), sampler(FRAME_SAMPLER)]);

@@ -3,8 +3,10 @@
 pub mod bindings;
 mod device;
 pub mod formats;
+mod kept;
 pub mod pipeline;
 mod readback;
 
 pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};
+pub use kept::KeptUniform;
 pub use readback::{Readback, read_buffer, read_texel, read_texture};

@@ -1,7 +1,7 @@
 //! Vertices and indices: two buffers for the whole scene, holding only the attributes that some draw reads.
 
 use super::UploadError;
-use crate::frame::Drawables;
+use crate::frame::{Drawables, PrimitivePlace};
 use crate::scene::{Primitive, Scene};
 use crate::shader::VertexFeatures;
 use std::collections::HashMap;
@@ -20,7 +20,8 @@ pub(crate) struct GpuPrimitive {
 pub(crate) struct Geometry {
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
-    pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
+    /// Of each drawable.
+    pub(crate) primitives: Vec<GpuPrimitive>,
 }
 
 /// Uploads every primitive that is drawn, once.
@@ -30,16 +31,18 @@ pub(crate) fn upload_primitives(
     drawables: &Drawables,
 ) -> Result<Geometry, UploadError> {
     let (mut vertices, mut indices) = (Vec::<u8>::new(), Vec::<u32>::new());
-    let mut primitives = HashMap::new();
+    let mut uploaded: HashMap<PrimitivePlace, GpuPrimitive> = HashMap::new();
+    let mut primitives = Vec::with_capacity(drawables.draws.len());
     for drawable in &drawables.draws {
         let key = (drawable.mesh, drawable.primitive);
-        primitives.entry(key).or_insert_with(|| {
+        let primitive = uploaded.entry(key).or_insert_with(|| {
             let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
             let attributes = append_attributes(&mut vertices, primitive, &drawable.vertex_features);
             let first = indices.len() as u32;
             indices.extend_from_slice(&primitive.indices);
             GpuPrimitive { attributes, indices: first..indices.len() as u32 }
         });
+        primitives.push(primitive.clone());
     }
     let buffer = |what, contents: &[u8], usage| {
         let (needed, allowed) = (contents.len() as u64, device.limits().max_buffer_size);

@@ -18,7 +18,8 @@ use wgpu::util::DeviceExt;
 /// Bind groups of group 1 and their layouts.
 #[derive(Debug, Default)]
 pub(crate) struct Materials {
-    pub(crate) groups: HashMap<(usize, MaterialFeatures), wgpu::BindGroup>,
+    /// Of each drawable.
+    pub(crate) groups: Vec<wgpu::BindGroup>,
     pub(crate) layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
 }
 
@@ -32,16 +33,16 @@ pub(crate) fn upload(
 ) -> (Materials, u64, Vec<String>) {
     let mut cache = TextureCache::default();
     let mut materials = Materials::default();
+    let mut bound: HashMap<(usize, MaterialFeatures), wgpu::BindGroup> = HashMap::new();
     let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
     let disney_table = reads_table.then(|| disney_table.upload(device, queue));
     for drawable in &drawables.draws {
         let key = (drawable.material, drawable.material_features);
-        if materials.groups.contains_key(&key) {
-            continue;
-        }
         let layout = materials.layouts.entry(key.1).or_insert_with(|| material_layout(device, &key.1));
-        let group = bind(device, queue, scene, (&mut cache, disney_table.as_ref()), layout, key);
-        materials.groups.insert(key, group);
+        let group = bound
+            .entry(key)
+            .or_insert_with(|| bind(device, queue, scene, (&mut cache, disney_table.as_ref()), layout, key));
+        materials.groups.push(group.clone());
     }
     (materials, cache.bytes, cache.warnings)
 }

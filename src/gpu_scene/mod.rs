@@ -8,10 +8,10 @@ mod pulled;
 mod tables;
 mod textures;
 
-use crate::frame::{Drawables, PlacedInstance};
+use crate::frame::{Drawables, PlacedInstance, is_deferrable};
 use crate::gpu::bindings::{self, frame_layout};
-use crate::scene::{Bounds, EnvironmentMaps, LightInWorld, LightKind, Scene, Topology};
-use crate::shader::{SceneFeatures, types};
+use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
+use crate::shader::{MaterialFeatures, SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
@@ -41,6 +41,19 @@ pub struct UploadedBytes {
     pub environment: u64,
 }
 
+/// What a drawable binds.
+#[derive(Debug)]
+pub(crate) struct GpuDraw {
+    pub(crate) primitive: GpuPrimitive,
+    pub(crate) material: wgpu::BindGroup,
+}
+
+impl GpuDraw {
+    fn new((primitive, material): (GpuPrimitive, wgpu::BindGroup)) -> Self {
+        Self { primitive, material }
+    }
+}
+
 /// What drawing reads of a scene.
 #[derive(Debug)]
 pub struct GpuScene {
@@ -49,17 +62,15 @@ pub struct GpuScene {
     pub bytes: UploadedBytes,
     /// Things that were drawn with less than was asked for.
     pub warnings: Vec<String>,
-    pub(crate) bounds_in_world: Bounds,
-    /// Subtracted from every position before it becomes f32.
-    pub(crate) origin_in_world: DVec3,
     pub(crate) light_count: u32,
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) instances: wgpu::Buffer,
-    pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
+    /// What each of the drawables binds.
+    pub(crate) draws: Vec<GpuDraw>,
+    pub(crate) material_layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
     /// For shading in a pass of its own, where that was asked for and can be.
     pub(crate) pulled: Option<PulledGeometry>,
-    pub(crate) materials: materials::Materials,
     pub(crate) lights: Option<wgpu::Buffer>,
     pub(crate) environment: Option<GpuEnvironment>,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
@@ -87,8 +98,7 @@ impl GpuScene {
         let mut features = SceneFeatures::of(scene);
         features.suns = features.environment && maps.is_some_and(|maps| !maps.suns.is_empty());
         let drawables = Drawables::new(scene, features);
-        let bounds = scene.bounds();
-        let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
+        let origin_in_world = drawables.origin_in_world;
         let geometry = upload_primitives(device, scene, &drawables)?;
         let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables, disney_table);
         let environment = match (features.environment, &scene.environment, maps) {
@@ -114,51 +124,40 @@ impl GpuScene {
                 environment: environment.as_ref().map_or(0, GpuEnvironment::bytes),
             },
             warnings,
-            bounds_in_world: bounds,
-            origin_in_world,
             light_count: lights.len() as u32,
             instances: storage("instances", bytemuck::cast_slice(&instance_data)),
             lights: features.punctual.then(|| storage("lights", bytemuck::cast_slice(&light_data))),
+            draws: geometry.primitives.into_iter().zip(materials.groups).map(GpuDraw::new).collect(),
             drawables,
             vertices: geometry.vertices,
             indices: geometry.indices,
-            primitives: geometry.primitives,
+            material_layouts: materials.layouts,
             pulled: None,
-            materials,
             environment,
             frame_layout: frame_layout(device, features),
         })
     }
 
-    /// Triangles of all draws.
-    pub(crate) fn triangles(&self) -> u64 {
-        let count = |drawable: &crate::frame::Drawable| {
-            let indices = self.primitives.get(&(drawable.mesh, drawable.primitive)).map_or(0, |p| p.indices.len());
-            (indices / 3 * drawable.instances.len()) as u64
-        };
-        let triangles = self.drawables.draws.iter().filter(|drawable| drawable.topology == Topology::Triangles);
-        triangles.map(count).sum()
-    }
-
     /// Uploads the geometry of `scene`, of which this was made, once more, so that surfaces can be shaded in a pass of
     /// their own. Does nothing where they cannot.
     pub(crate) fn pull(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) {
-        if crate::frame::is_deferrable(&self.drawables) {
-            self.pulled = PulledGeometry::new(device, queue, scene, (&self.drawables, self.origin_in_world));
+        if is_deferrable(&self.drawables) {
+            self.pulled = PulledGeometry::new(device, queue, scene, &self.drawables);
             self.bytes.geometry += self.pulled.as_ref().map_or(0, PulledGeometry::bytes);
         }
     }
 
-    /// Group 0 of the forward pass, with the uniform of one view.
+    /// Group 0 of the forward pass, with the uniform of one view and its list of visible instances.
     pub(crate) fn frame_group(
         &self,
         device: &wgpu::Device,
         shared: &SharedTextures,
-        frame: &wgpu::Buffer,
+        (frame, visible): (&wgpu::Buffer, &wgpu::Buffer),
     ) -> wgpu::BindGroup {
         let mut entries = vec![
             entry(bindings::FRAME_UNIFORM, frame.as_entire_binding()),
             entry(bindings::FRAME_INSTANCES, self.instances.as_entire_binding()),
+            entry(bindings::FRAME_VISIBLE, visible.as_entire_binding()),
         ];
         if self.features.is_lit() {
             entries.push(entry(bindings::FRAME_DFG, wgpu::BindingResource::TextureView(&shared.dfg)));

@@ -2,12 +2,11 @@
 //! numbers in one fetch, where a buffer takes one for each.
 
 use super::gpu_instance;
-use crate::frame::{Drawable, Drawables, PlacedInstance};
+use crate::frame::{Drawable, Drawables};
 use crate::gpu::formats;
-use crate::scene::{Bounds, Primitive, Scene};
+use crate::scene::{Primitive, Scene};
 use crate::shader::types::Instance;
 use crate::shader::{PULLED_ROW_TEXELS, texels_per_vertex};
-use glam::DVec3;
 use std::collections::HashMap;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
@@ -16,11 +15,10 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 pub struct PulledGeometry {
     pub(crate) vertices: wgpu::Texture,
     pub(crate) triangles: wgpu::Texture,
-    /// By mesh and primitive.
-    pub(crate) places: HashMap<(usize, usize), PulledPlace>,
-    /// By drawable: its one instance, and where that is.
+    /// By drawable.
+    pub(crate) places: Vec<PulledPlace>,
+    /// By drawable, its only one.
     pub(crate) instances: Vec<Instance>,
-    pub(crate) bounds_in_world: Vec<Bounds>,
 }
 
 /// Where a primitive begins, in texels.
@@ -36,33 +34,26 @@ impl PulledGeometry {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &Scene,
-        (drawables, origin_in_world): (&Drawables, DVec3),
+        drawables: &Drawables,
     ) -> Option<Self> {
         let (mut vertices, mut triangles) = (Vec::<[f32; 4]>::new(), Vec::<[u32; 4]>::new());
-        let mut places = HashMap::new();
+        let mut uploaded = HashMap::new();
+        let mut places = Vec::new();
         for drawable in &drawables.draws {
-            places.entry((drawable.mesh, drawable.primitive)).or_insert_with(|| {
+            let place = *uploaded.entry((drawable.mesh, drawable.primitive)).or_insert_with(|| {
                 let place = PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32 };
                 let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
                 triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
                 (0..primitive.positions.len()).for_each(|i| append_vertex(&mut vertices, drawable, primitive, i));
                 place
             });
+            places.push(place);
         }
         Some(Self {
             vertices: texture(device, queue, formats::PULLED_VERTICES, bytemuck::cast_slice(&vertices))?,
             triangles: texture(device, queue, formats::PULLED_TRIANGLES, bytemuck::cast_slice(&triangles))?,
             places,
-            instances: drawables
-                .draws
-                .iter()
-                .map(|drawable| gpu_instance(first_instance(drawables, drawable), origin_in_world))
-                .collect(),
-            bounds_in_world: drawables
-                .draws
-                .iter()
-                .map(|drawable| bounds_in_world(scene, drawables, drawable))
-                .collect(),
+            instances: drawables.draws.iter().map(|drawable| instance(drawables, drawable)).collect(),
         })
     }
 
@@ -71,18 +62,10 @@ impl PulledGeometry {
     }
 }
 
-fn first_instance<'a>(drawables: &'a Drawables, drawable: &Drawable) -> &'a PlacedInstance {
-    &drawables.instances[drawable.instances.start as usize]
-}
-
-/// Around the first instance.
-fn bounds_in_world(scene: &Scene, drawables: &Drawables, drawable: &Drawable) -> Bounds {
-    let world_from_object = first_instance(drawables, drawable).instance.world_from_object;
-    let mut bounds = Bounds::EMPTY;
-    for position in &scene.meshes[drawable.mesh].primitives[drawable.primitive].positions {
-        bounds.grow(world_from_object.transform_point3(position.as_dvec3()));
-    }
-    bounds
+/// As it places the only instance.
+fn instance(drawables: &Drawables, drawable: &Drawable) -> Instance {
+    let placement = drawables.placements.instances[drawable.placements.start];
+    gpu_instance(&drawables.instances[placement as usize], drawables.origin_in_world)
 }
 
 /// The attributes in the order of [`crate::shader::attributes`].

@@ -5,9 +5,11 @@ use super::error::{Fault, Notes, quote};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 
 /// The extensions that are imported.
-pub const SUPPORTED_EXTENSIONS: [&str; 8] = [
+pub const SUPPORTED_EXTENSIONS: [&str; 9] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_emissive_strength",
@@ -160,6 +162,12 @@ impl Default for SpotCone {
 #[derive(Debug, Deserialize)]
 pub(super) struct NodeLight {
     pub(super) light: u64,
+}
+
+/// The accessors that place a node's mesh many times.
+#[derive(Debug, Deserialize)]
+pub(super) struct MeshInstancing {
+    pub(super) attributes: BTreeMap<String, u64>,
 }
 
 fn one() -> f32 {

@@ -15,6 +15,7 @@ mod error;
 mod extensions;
 mod geometry;
 mod images;
+mod instancing;
 mod lights;
 mod limits;
 mod materials;
@@ -163,7 +164,7 @@ fn import_model(
 
     let root = &document.root;
     let lights = lights::import(root, notes)?;
-    let nodes = nodes::import(root, lights.len(), notes)?;
+    let mut nodes = nodes::import(root, lights.len(), notes)?;
     let chosen = nodes::choose_scene(root, &nodes, options.scene.as_ref(), notes)?;
     let cameras = cameras::import(root, notes)?;
     let mut materials = materials::import(root, notes)?;
@@ -174,6 +175,7 @@ fn import_model(
 
     let buffers = Buffers::load(root, container.binary, &resources)?;
     let accessors = Accessors { root, buffers: &buffers, budget: &budget, limits: &options.limits };
+    instancing::import(&accessors, &mut nodes, notes)?;
     let images = images::import(&accessors, &resources, &textures.images, options.progress)?;
     let meshes = build_meshes(&accessors, &materials, options.progress, notes)?;
     let scene = Scene {

@@ -35,6 +35,8 @@ fn convert(json: &json::Node, n: usize, light_count: usize, notes: &mut Notes) -
         parent_from_node: transform(json, &here, notes)?,
         children: json.children.iter().flatten().map(|child| child.value()).collect(),
         mesh: json.mesh.map(|mesh| mesh.value()),
+        // Its data are read when there are accessors.
+        node_from_objects: None,
         camera: json.camera.map(|camera| camera.value()),
         light,
     })

@@ -1,12 +1,12 @@
 //! The panorama, drawn where no surface is.
 
+use crate::gpu::KeptUniform;
 use crate::gpu::bindings::background_layout;
 use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::{Panorama, entry};
 use crate::shader::types::BackgroundUniform;
 use crate::shader::{Composed, ShaderError, ShaderSources, background_module, create_module};
 use std::collections::HashMap;
-use wgpu::util::DeviceExt;
 
 /// What the panorama is drawn into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -52,27 +52,26 @@ impl BackgroundPipeline {
 
     pub fn prepare(
         &mut self,
-        device: &wgpu::Device,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         sources: &ShaderSources,
         target: BackgroundTarget,
         panorama: &Panorama,
-        uniform: &BackgroundUniform,
+        (uniform, kept): (&BackgroundUniform, &mut KeptUniform<wgpu::TextureView>),
     ) -> Result<BackgroundPass, ShaderError> {
         let pipeline = self.pipeline(device, sources, target)?;
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("background"),
-            contents: bytemuck::bytes_of(uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("background"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, uniform.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&panorama.view)),
-                entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
-            ],
-        });
+        let bind = |uniform: &wgpu::Buffer, view: &wgpu::TextureView| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("background"),
+                layout: &self.layout,
+                entries: &[
+                    entry(0, uniform.as_entire_binding()),
+                    entry(1, wgpu::BindingResource::TextureView(view)),
+                    entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
+                ],
+            })
+        };
+        let contents = bytemuck::bytes_of(uniform);
+        let group = kept.group((device, queue), "background", contents, panorama.view.clone(), bind);
         Ok(BackgroundPass { group, pipeline })
     }
 

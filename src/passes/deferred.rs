@@ -6,7 +6,7 @@
 
 mod pipelines;
 
-use crate::frame::{Draw, FramePlan, rectangle_around};
+use crate::frame::{Draw, FramePlan, clip_from_origin, rectangle_around};
 use crate::gpu_scene::{GpuScene, PulledGeometry, entry};
 use crate::scene::View;
 use crate::shader::types::PulledDraw;
@@ -35,7 +35,7 @@ pub struct DeferredTarget<'a> {
     pub coverage: f32,
 }
 
-/// What one view binds.
+/// One view of a frame, ready to be recorded.
 #[derive(Debug)]
 pub struct DeferredPass {
     draws: Vec<PreparedDraw>,
@@ -51,8 +51,31 @@ struct PreparedDraw {
     shade: (wgpu::RenderPipeline, wgpu::BindGroup),
 }
 
+/// What frames into the same textures bind alike, whatever the camera.
+#[derive(Debug)]
+pub struct DeferredGroups {
+    scene: wgpu::Buffer,
+    visibility: wgpu::TextureView,
+    size_px: UVec2,
+    covered: wgpu::BindGroup,
+    /// For the visibility pass and for shading, by drawable.
+    draws: Vec<[wgpu::BindGroup; 2]>,
+}
+
+impl DeferredGroups {
+    fn fit(&self, scene: &GpuScene, target: &DeferredTarget<'_>) -> bool {
+        (&self.scene, &self.visibility, self.size_px) == (&scene.instances, target.visibility, target.size_px)
+    }
+
+    /// Buffers and bind groups.
+    pub fn count(&self) -> u32 {
+        1 + 3 * self.draws.len() as u32
+    }
+}
+
 impl DeferredPipelines {
-    /// Makes ready to draw the opaque part of `plan`.
+    /// Makes ready to draw the opaque part of `plan`. `kept` holds what frames have in common; it is made anew where it is
+    /// for something else.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -60,9 +83,39 @@ impl DeferredPipelines {
         (scene, geometry): (&GpuScene, &PulledGeometry),
         (plan, view): (&FramePlan, &View),
         target: &DeferredTarget<'_>,
+        kept: &mut Option<DeferredGroups>,
     ) -> Result<DeferredPass, ShaderError> {
         let DeferredTarget { format, samples, coverage, .. } = *target;
         let into = ShadingTarget { format, samples, is_filled: coverage > 0.0 };
+        if !kept.as_ref().is_some_and(|groups| groups.fit(scene, target)) {
+            *kept = None;
+        }
+        let groups = kept.get_or_insert_with(|| self.groups(device, scene, geometry, target));
+        let clip = clip_from_origin(view, scene.drawables.origin_in_world);
+        let mut draws = Vec::with_capacity(plan.opaque.len());
+        for draw in &plan.opaque {
+            let bounds = scene.drawables.draws[draw.drawable].bounds;
+            let Some(rectangle) = rectangle_around(bounds, &clip, target.size_px) else { continue };
+            let key = plan.pipelines[draw.pipeline];
+            let [see, shade] = groups.draws[draw.drawable].clone();
+            draws.push(PreparedDraw {
+                draw: draw.clone(),
+                rectangle,
+                see: (self.visibility(device, sources, scene, &key, samples)?, see),
+                shade: (self.shading(device, sources, scene, &key.features, into)?, shade),
+            });
+        }
+        let cover = (self.covered(device, sources, samples)?, groups.covered.clone());
+        Ok(DeferredPass { draws, cover })
+    }
+
+    fn groups(
+        &mut self,
+        device: &wgpu::Device,
+        scene: &GpuScene,
+        geometry: &PulledGeometry,
+        target: &DeferredTarget<'_>,
+    ) -> DeferredGroups {
         let layouts = self.layouts(device, target.samples);
         let [vertices, triangles] =
             [&geometry.vertices, &geometry.triangles].map(|texture| texture.create_view(&Default::default()));
@@ -70,19 +123,10 @@ impl DeferredPipelines {
         let group = |label, layout, entries: &[wgpu::BindGroupEntry<'_>]| {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
         };
-        let mut draws = Vec::new();
-        for (index, draw) in plan.opaque.iter().enumerate() {
-            let key = plan.pipelines[draw.pipeline];
-            let number = index as u32 + 1;
-            let (Some(uniform), Some(rectangle)) = (
-                pulled_draw(scene, geometry, draw, key.mirrored, (number, view.size_px)),
-                rectangle_around(&geometry.bounds_in_world[draw.drawable], view),
-            ) else {
-                continue;
-            };
+        let of_draw = |drawable: usize| {
             let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("pulled draw"),
-                contents: bytemuck::bytes_of(&uniform),
+                contents: bytemuck::bytes_of(&pulled_draw(scene, geometry, drawable, target.size_px)),
                 usage: wgpu::BufferUsages::UNIFORM,
             });
             let entries = [
@@ -91,45 +135,32 @@ impl DeferredPipelines {
                 entry(2, wgpu::BindingResource::TextureView(&triangles)),
                 seen.clone(),
             ];
-            draws.push(PreparedDraw {
-                draw: *draw,
-                rectangle,
-                see: (
-                    self.visibility(device, sources, scene, &key, target.samples)?,
-                    group("visibility", &layouts.visibility, &entries[..1]),
-                ),
-                shade: (
-                    self.shading(device, sources, scene, &key.features, into)?,
-                    group("deferred", &layouts.pulled, &entries),
-                ),
-            });
+            [group("visibility", &layouts.visibility, &entries[..1]), group("deferred", &layouts.pulled, &entries)]
+        };
+        DeferredGroups {
+            scene: scene.instances.clone(),
+            visibility: target.visibility.clone(),
+            size_px: target.size_px,
+            covered: group("covered", &layouts.covered, std::slice::from_ref(&seen)),
+            draws: (0..scene.draws.len()).map(of_draw).collect(),
         }
-        let cover = (self.covered(device, sources, target.samples)?, group("covered", &layouts.covered, &[seen]));
-        Ok(DeferredPass { draws, cover })
     }
 }
 
-fn pulled_draw(
-    scene: &GpuScene,
-    geometry: &PulledGeometry,
-    draw: &Draw,
-    mirrored: bool,
-    (number, size_px): (u32, UVec2),
-) -> Option<PulledDraw> {
-    let drawable = &scene.drawables.draws[draw.drawable];
-    let place = geometry.places.get(&(drawable.mesh, drawable.primitive))?;
-    let instance = &geometry.instances[draw.drawable];
-    Some(PulledDraw {
+fn pulled_draw(scene: &GpuScene, geometry: &PulledGeometry, drawable: usize, size_px: UVec2) -> PulledDraw {
+    let instance = &geometry.instances[drawable];
+    let place = &geometry.places[drawable];
+    PulledDraw {
         first_triangle: place.triangles,
         first_vertex: place.vertices,
-        number,
+        number: drawable as u32 + 1,
+        front: if scene.drawables.draws[drawable].mirrored { -1.0 } else { 1.0 },
         world_from_object: instance.world_from_object,
         normal_from_object: instance.normal_from_object,
         handedness: instance.handedness,
         ndc_step: [2.0 / size_px.x as f32, -2.0 / size_px.y as f32],
-        front: if mirrored { -1.0 } else { 1.0 },
         ..Default::default()
-    })
+    }
 }
 
 impl DeferredPass {
@@ -166,12 +197,11 @@ impl DeferredPass {
         pass.set_bind_group(0, frame_group, &[]);
         pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
         for prepared in &self.draws {
-            let drawable = &scene.drawables.draws[prepared.draw.drawable];
-            let Some(primitive) = scene.primitives.get(&(drawable.mesh, drawable.primitive)) else { continue };
+            let primitive = &scene.draws[prepared.draw.drawable].primitive;
             pass.set_pipeline(&prepared.see.0);
             pass.set_bind_group(1, &prepared.see.1, &[]);
             pass.set_vertex_buffer(0, scene.vertices.slice(primitive.attributes[0].clone()));
-            pass.draw_indexed(primitive.indices.clone(), 0, drawable.instances.clone());
+            pass.draw_indexed(primitive.indices.clone(), 0, prepared.draw.instances.clone());
         }
     }
 
@@ -184,11 +214,8 @@ impl DeferredPass {
     ) {
         pass.set_bind_group(0, frame_group, &[]);
         for prepared in &self.draws {
-            let drawable = &scene.drawables.draws[prepared.draw.drawable];
-            let material = (drawable.material, drawable.material_features);
-            let Some(group) = scene.materials.groups.get(&material) else { continue };
             pass.set_pipeline(&prepared.shade.0);
-            pass.set_bind_group(1, group, &[]);
+            pass.set_bind_group(1, &scene.draws[prepared.draw.drawable].material, &[]);
             pass.set_bind_group(2, &prepared.shade.1, &[]);
             let [corner, size] = prepared.rectangle;
             pass.set_scissor_rect(corner.x, corner.y, size.x, size.y);

@@ -1,12 +1,12 @@
 //! Scene radiance to display values: exposure, tone map, background colour, sRGB.
 
+use crate::gpu::KeptUniform;
 use crate::gpu::bindings::display_layout;
 use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::entry;
 use crate::shader::types::DisplayUniform;
 use crate::shader::{Composed, DisplayFeatures, ShaderError, ShaderSources, create_module, display_module};
 use std::collections::HashMap;
-use wgpu::util::DeviceExt;
 
 /// Display pipelines by features and target format.
 #[derive(Debug)]
@@ -35,12 +35,12 @@ impl DisplayPipelines {
 
     pub fn prepare(
         &mut self,
-        device: &wgpu::Device,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
         sources: &ShaderSources,
         features: DisplayFeatures,
         format: wgpu::TextureFormat,
         radiance: &wgpu::TextureView,
-        uniform: &DisplayUniform,
+        (uniform, kept): (&DisplayUniform, &mut KeptUniform<wgpu::TextureView>),
     ) -> Result<DisplayPass, ShaderError> {
         let pipeline = match self.pipelines.get(&(features, format)) {
             Some((_, pipeline)) => pipeline.clone(),
@@ -54,16 +54,18 @@ impl DisplayPipelines {
                 pipeline
             }
         };
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("display"),
-            contents: bytemuck::bytes_of(uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("display"),
-            layout: &self.layout,
-            entries: &[entry(0, uniform.as_entire_binding()), entry(1, wgpu::BindingResource::TextureView(radiance))],
-        });
+        let bind = |uniform: &wgpu::Buffer, radiance: &wgpu::TextureView| {
+            device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("display"),
+                layout: &self.layout,
+                entries: &[
+                    entry(0, uniform.as_entire_binding()),
+                    entry(1, wgpu::BindingResource::TextureView(radiance)),
+                ],
+            })
+        };
+        let contents = bytemuck::bytes_of(uniform);
+        let group = kept.group((device, queue), "display", contents, radiance.clone(), bind);
         Ok(DisplayPass { group, pipeline })
     }
 }

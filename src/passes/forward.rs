@@ -2,7 +2,7 @@
 
 use crate::frame::{Draw, FramePlan, PipelineKey};
 use crate::gpu::pipeline::{depth_state, primitive_state};
-use crate::gpu_scene::GpuScene;
+use crate::gpu_scene::{GpuDraw, GpuScene};
 use crate::scene::Topology;
 use crate::shader::{
     Alpha, Composed, ForwardFeatures, ShaderError, ShaderSources, attributes, create_module, forward_module,
@@ -65,46 +65,42 @@ impl ForwardPipelines {
         self.modules.iter().map(|(features, (composed, _))| (format!("forward+{features}"), composed.text.as_str()))
     }
 
-    fn get(&self, key: PipelineKey, target: ForwardTarget) -> Option<&wgpu::RenderPipeline> {
-        self.pipelines.get(&(key, target))
+    /// The pipelines of a prepared plan, in its order.
+    pub fn of_plan(&self, plan: &FramePlan, target: ForwardTarget) -> Vec<Option<&wgpu::RenderPipeline>> {
+        plan.pipelines.iter().map(|key| self.pipelines.get(&(*key, target))).collect()
     }
 }
 
-/// Records `draws` of a prepared plan. State that two draws in a row share is set once.
+/// Records `draws` of a plan with its pipelines. State that two draws in a row share is set once.
 pub fn draw(
     pass: &mut wgpu::RenderPass<'_>,
-    pipelines: &ForwardPipelines,
-    target: ForwardTarget,
+    pipelines: &[Option<&wgpu::RenderPipeline>],
     scene: &GpuScene,
     frame_group: &wgpu::BindGroup,
-    plan: &FramePlan,
     draws: &[Draw],
 ) {
     pass.set_bind_group(0, frame_group, &[]);
     if scene.indices.size() > 0 {
         pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
     }
-    let (mut bound_pipeline, mut bound_material) = (None, None);
+    let (mut bound_pipeline, mut bound_material, mut bound_primitive) = (None, None, None);
     for draw in draws {
         let drawable = &scene.drawables.draws[draw.drawable];
-        let material = (drawable.material, drawable.material_features);
-        let (Some(pipeline), Some(group), Some(primitive)) = (
-            pipelines.get(plan.pipelines[draw.pipeline], target),
-            scene.materials.groups.get(&material),
-            scene.primitives.get(&(drawable.mesh, drawable.primitive)),
-        ) else {
-            continue;
-        };
+        let GpuDraw { primitive, material } = &scene.draws[draw.drawable];
+        let Some(pipeline) = pipelines[draw.pipeline] else { continue };
         if bound_pipeline.replace(draw.pipeline) != Some(draw.pipeline) {
             pass.set_pipeline(pipeline);
         }
         if bound_material.replace(material) != Some(material) {
-            pass.set_bind_group(1, group, &[]);
+            pass.set_bind_group(1, material, &[]);
         }
-        for (slot, range) in primitive.attributes.iter().enumerate() {
-            pass.set_vertex_buffer(slot as u32, scene.vertices.slice(range.clone()));
+        let place = (drawable.mesh, drawable.primitive);
+        if bound_primitive.replace(place) != Some(place) {
+            for (slot, range) in primitive.attributes.iter().enumerate() {
+                pass.set_vertex_buffer(slot as u32, scene.vertices.slice(range.clone()));
+            }
         }
-        pass.draw_indexed(primitive.indices.clone(), 0, drawable.instances.clone());
+        pass.draw_indexed(primitive.indices.clone(), 0, draw.instances.clone());
     }
 }
 
@@ -115,7 +111,7 @@ fn create_pipeline(
     key: &PipelineKey,
     target: ForwardTarget,
 ) -> wgpu::RenderPipeline {
-    let material_layout = scene.materials.layouts.get(&key.features.material);
+    let material_layout = scene.material_layouts.get(&key.features.material);
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("forward"),
         bind_group_layouts: &[Some(&scene.frame_layout), material_layout],

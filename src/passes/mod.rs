@@ -6,6 +6,6 @@ mod display;
 mod forward;
 
 pub use background::{BackgroundPass, BackgroundPipeline, BackgroundTarget};
-pub use deferred::{DeferredPass, DeferredPipelines, DeferredTarget};
+pub use deferred::{DeferredGroups, DeferredPass, DeferredPipelines, DeferredTarget};
 pub use display::{DisplayPass, DisplayPipelines};
 pub use forward::{ForwardPipelines, ForwardTarget, draw};

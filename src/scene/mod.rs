@@ -37,6 +37,8 @@ pub struct Node {
     pub parent_from_node: DMat4,
     pub children: Vec<usize>,
     pub mesh: Option<usize>,
+    /// Where the mesh is placed around the node, if not once and at the node itself (EXT_mesh_gpu_instancing).
+    pub node_from_objects: Option<Vec<DMat4>>,
     pub camera: Option<usize>,
     pub light: Option<usize>,
 }
@@ -121,12 +123,20 @@ impl Scene {
         out
     }
 
-    /// Every mesh instance of the scene, in depth-first order of the node tree.
+    /// Every mesh instance of the scene, in depth-first order of the node tree and in the order of each node.
     pub fn instances(&self) -> Vec<Instance> {
-        let place = |(node, world_from_object): (usize, DMat4)| {
-            self.nodes[node].mesh.map(|mesh| Instance { node, mesh, world_from_object })
-        };
-        self.world_transforms().into_iter().filter_map(place).collect()
+        let mut instances = Vec::new();
+        for (node, world_from_node) in self.world_transforms() {
+            let Node { mesh: Some(mesh), ref node_from_objects, .. } = self.nodes[node] else { continue };
+            match node_from_objects {
+                None => instances.push(Instance { node, mesh, world_from_object: world_from_node }),
+                Some(placed) => instances.extend(placed.iter().map(|node_from_object| {
+                    let world_from_object = world_from_node * *node_from_object;
+                    Instance { node, mesh, world_from_object }
+                })),
+            }
+        }
+        instances
     }
 
     /// The environment, unless it is as dark as none.

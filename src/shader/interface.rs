@@ -53,7 +53,7 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
         fields("position"),
         fields("position_in_world")
     );
-    text.push_str(&vertex_functions(vertex, "instances[in.instance]"));
+    text.push_str(&vertex_functions(vertex, "instances[visible_instances[in.instance]]"));
     text
 }
 

@@ -33,6 +33,12 @@ fn a_picture_is_written_and_reported() {
     assert_eq!(image::open(&png).unwrap().to_rgba8().dimensions(), (80, 60));
     let stats: serde_json::Value = serde_json::from_slice(&std::fs::read(&stats).unwrap()).unwrap();
     assert!(stats["gpu"]["draws"].as_u64() > Some(10) && stats["adapter"]["name"].is_string(), "{stats}");
+    let placements = &stats["gpu"]["placements"];
+    let count = |key: &str| placements[key].as_u64().unwrap();
+    assert!(
+        count("all") > 10 && count("drawn") + count("outside") + count("between_samples") == count("all"),
+        "{stats}"
+    );
     for stage in ["decode", "environment bake", "device", "upload", "pipelines", "first frame", "readback", "encode"] {
         let mut stages = stats["milliseconds"].as_array().unwrap().iter();
         assert!(stages.any(|entry| entry["stage"] == stage), "{stage} is missing in {stats}");

@@ -6,6 +6,7 @@ mod bench;
 mod cache;
 mod cli;
 mod compare;
+mod culling;
 mod disney;
 mod frames;
 mod goldens;

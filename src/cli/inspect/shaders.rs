@@ -2,6 +2,7 @@
 
 use crate::capture::{CaptureError, CaptureTarget, CapturedPixel, PIXEL_OPTIONS, capture_pixel};
 use crate::cli::error::CliError;
+use crate::frame::PrimitivePlace;
 use crate::gpu::Gpu;
 use crate::gpu_scene::GpuScene;
 use crate::renderer::Renderer;
@@ -58,23 +59,20 @@ impl<'a> Shaders<'a> {
     }
 
     /// An input of the nearest surface, which is of this primitive of a mesh; `None` if its shader has no use for it.
-    pub(super) fn input(&mut self, input: Input, (mesh, primitive): (usize, usize)) -> Result<Option<DVec3>, CliError> {
-        let drawables = &self.scene.drawables.draws;
-        let is_read = drawables
-            .iter()
-            .find(|drawable| (drawable.mesh, drawable.primitive) == (mesh, primitive))
+    pub(super) fn input(&mut self, input: Input, place: PrimitivePlace) -> Result<Option<DVec3>, CliError> {
+        let drawable = self.scene.drawables.find(place);
+        let is_read = drawable
             .is_some_and(|drawable| channel_is_read(input, &drawable.material_features, &drawable.vertex_features));
         if !is_read {
             return Ok(None);
         }
         let value = self.channel(Channel::Input(input))?;
-        Ok(Some(if input == Input::Position { value + self.scene.origin_in_world } else { value }))
+        Ok(Some(if input == Input::Position { value + self.scene.drawables.origin_in_world } else { value }))
     }
 
     /// The set of texture coordinates that [`Input::Uv`] is of, for a primitive of a mesh.
-    pub(super) fn uv_set(&self, (mesh, primitive): (usize, usize)) -> Option<usize> {
-        let drawables = &self.scene.drawables.draws;
-        let drawable = drawables.iter().find(|drawable| (drawable.mesh, drawable.primitive) == (mesh, primitive))?;
+    pub(super) fn uv_set(&self, place: PrimitivePlace) -> Option<usize> {
+        let drawable = self.scene.drawables.find(place)?;
         drawable.vertex_features.uv_sets().next().map(|set| set as usize)
     }
 }

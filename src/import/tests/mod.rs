@@ -6,6 +6,7 @@ mod environments;
 mod geometry;
 mod hostile;
 mod images;
+mod instancing;
 mod materials;
 mod mutants;
 mod nodes;

@@ -164,7 +164,7 @@ impl DeferredPipelines {
         let name = format!("deferred.{}+{features}", target.samples);
         let module = self.module(device, name, || deferred_module(sources, &features, target.samples))?;
         let layouts = self.layouts(device, target.samples);
-        let material = scene.materials.layouts.get(&features.material);
+        let material = scene.material_layouts.get(&features.material);
         let groups = [Some(&scene.frame_layout), material, Some(&layouts.pulled)];
         let into = FullscreenTarget {
             format: Some(target.format),

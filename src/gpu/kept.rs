@@ -1,0 +1,61 @@
+//! What a pass binds, kept from frame to frame.
+
+use wgpu::util::DeviceExt;
+
+/// A uniform buffer in a bind group: both are made when first asked for, or when the group has to bind something else,
+/// and otherwise the buffer alone is written, if its contents are others.
+#[derive(Debug)]
+pub struct KeptUniform<K> {
+    kept: Option<Kept<K>>,
+    made: u32,
+}
+
+#[derive(Debug)]
+struct Kept<K> {
+    beside: K,
+    contents: Vec<u8>,
+    buffer: wgpu::Buffer,
+    group: wgpu::BindGroup,
+}
+
+impl<K> Default for KeptUniform<K> {
+    fn default() -> Self {
+        Self { kept: None, made: 0 }
+    }
+}
+
+impl<K: PartialEq> KeptUniform<K> {
+    /// The group that `bind` makes of a uniform buffer with `contents` and of what is `beside` it.
+    ///
+    /// The contents are written when the queue is submitted to next: one group serves one frame of a submission.
+    pub fn group(
+        &mut self,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        label: &str,
+        contents: &[u8],
+        beside: K,
+        bind: impl FnOnce(&wgpu::Buffer, &K) -> wgpu::BindGroup,
+    ) -> wgpu::BindGroup {
+        let kept = self.kept.take().filter(|kept| kept.beside == beside && kept.contents.len() == contents.len());
+        let mut kept = kept.unwrap_or_else(|| {
+            self.made += 2;
+            let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+            let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
+            let buffer = device.create_buffer_init(&descriptor);
+            let group = bind(&buffer, &beside);
+            Kept { beside, contents: contents.to_vec(), buffer, group }
+        });
+        if kept.contents != contents {
+            queue.write_buffer(&kept.buffer, 0, contents);
+            kept.contents.copy_from_slice(contents);
+        }
+        let group = kept.group.clone();
+        self.kept = Some(kept);
+        group
+    }
+
+    /// Buffers and bind groups made so far.
+    pub fn made(&self) -> u32 {
+        self.made
+    }
+}
