@@ -9,7 +9,7 @@ use crate::gpu::formats;
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
 use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
-use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
+use crate::scene::{Background, Camera, Channel, EnvironmentMaps, LightSource, Projection, Scene, ToneMap, View};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
 use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
 use glam::{DMat3, DVec2, DVec3, DVec4, UVec2};
@@ -132,7 +132,9 @@ impl Renderer {
             contents: bytemuck::bytes_of(&frame_uniform(scene, view)),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let frame_group = scene.frame_group(device, &self.shared, &frame);
+        let origin_in_world = scene.origin_in_world;
+        let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
+        let frame_group = scene.frame_group(device, &self.shared, &frame, clusters.as_ref());
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
             1.0
@@ -214,11 +216,19 @@ fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
         Projection::Perspective { .. } => eye.extend(1.0),
         Projection::Orthographic { .. } => (-camera.forward_in_world()).extend(0.0),
     };
-    let [channel, channel_index, channel_components] = view.channel.map_or([0; 3], channel_uniform);
+    let lights = scene.lights.as_ref();
+    let channel = view.channel.map(|channel| match (channel, lights) {
+        // Lights are numbered as the scene has them.
+        (Channel::Radiance { source: LightSource::Light(light), components }, Some(lights)) => {
+            Channel::Radiance { source: LightSource::Light(lights.place(light)), components }
+        }
+        (other, _) => other,
+    });
+    let [channel, channel_index, channel_components] = channel.map_or([0; 3], channel_uniform);
     FrameUniform {
         clip_from_world: (clip_from_view * camera.world_from_view.inverse()).as_mat4().to_cols_array_2d(),
         viewer: viewer.as_vec4().to_array(),
-        light_count: scene.light_count,
+        light_count: lights.map_or(0, |lights| lights.lit),
         channel,
         channel_index,
         channel_components,

@@ -2,6 +2,7 @@
 
 mod environment;
 mod geometry;
+mod lights;
 mod materials;
 pub mod mips;
 mod tables;
@@ -9,7 +10,7 @@ mod textures;
 
 use crate::frame::{Drawables, PlacedInstance};
 use crate::gpu::bindings::{self, frame_layout};
-use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
+use crate::scene::{EnvironmentMaps, Scene};
 use crate::shader::{SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
@@ -18,6 +19,7 @@ use wgpu::util::DeviceExt;
 
 pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
+use lights::{GpuClusters, GpuLights};
 pub use tables::Table;
 
 /// Why a scene cannot be put on this device.
@@ -49,13 +51,12 @@ pub struct GpuScene {
     pub warnings: Vec<String>,
     /// Subtracted from every position before it becomes f32.
     pub(crate) origin_in_world: DVec3,
-    pub(crate) light_count: u32,
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) instances: wgpu::Buffer,
     pub(crate) primitives: HashMap<(usize, usize), GpuPrimitive>,
     pub(crate) materials: materials::Materials,
-    pub(crate) lights: Option<wgpu::Buffer>,
+    pub(crate) lights: Option<GpuLights>,
     pub(crate) environment: Option<GpuEnvironment>,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
 }
@@ -91,8 +92,11 @@ impl GpuScene {
             (true, ..) => return Err(UploadError::MissingMaps),
             (false, ..) => None,
         };
-        let lights = scene.lights_in_world();
-        let light_data: Vec<types::Light> = lights.iter().map(|light| gpu_light(light, origin_in_world)).collect();
+        let lights = if features.punctual {
+            Some(GpuLights::new(device, &scene.lights_in_world(), origin_in_world, features.light_list)?)
+        } else {
+            None
+        };
         let instance_data: Vec<types::Instance> =
             drawables.instances.iter().map(|placed| gpu_instance(placed, origin_in_world)).collect();
         let storage = |label, contents: &[u8]| {
@@ -110,9 +114,8 @@ impl GpuScene {
             },
             warnings,
             origin_in_world,
-            light_count: lights.len() as u32,
             instances: storage("instances", bytemuck::cast_slice(&instance_data)),
-            lights: features.punctual.then(|| storage("lights", bytemuck::cast_slice(&light_data))),
+            lights,
             drawables,
             vertices: geometry.vertices,
             indices: geometry.indices,
@@ -123,12 +126,13 @@ impl GpuScene {
         })
     }
 
-    /// Group 0 of the forward pass, with the uniform of one view.
+    /// Group 0 of the forward pass, with the uniform and the clusters of one view.
     pub(crate) fn frame_group(
         &self,
         device: &wgpu::Device,
         shared: &SharedTextures,
         frame: &wgpu::Buffer,
+        clusters: Option<&GpuClusters>,
     ) -> wgpu::BindGroup {
         let mut entries = vec![
             entry(bindings::FRAME_UNIFORM, frame.as_entire_binding()),
@@ -139,7 +143,11 @@ impl GpuScene {
             entries.push(entry(bindings::FRAME_SAMPLER, wgpu::BindingResource::Sampler(&shared.clamp_sampler)));
         }
         if let Some(lights) = &self.lights {
-            entries.push(entry(bindings::FRAME_LIGHTS, lights.as_entire_binding()));
+            entries.push(entry(bindings::FRAME_LIGHTS, lights.buffer.as_entire_binding()));
+        }
+        if let Some(clusters) = clusters {
+            entries.push(entry(bindings::FRAME_CLUSTERS, clusters.uniform.as_entire_binding()));
+            entries.push(entry(bindings::FRAME_CLUSTER_TABLE, clusters.table.as_entire_binding()));
         }
         if let Some(environment) = &self.environment {
             entries.push(entry(bindings::FRAME_ENVIRONMENT, environment.uniform.as_entire_binding()));
@@ -177,34 +185,5 @@ fn gpu_instance(placed: &PlacedInstance, origin_in_world: DVec3) -> types::Insta
         normal_from_object: cofactor.map(|column| (column * scale).extend(0.0).as_vec4().to_array()),
         handedness: sign as f32,
         ..Default::default()
-    }
-}
-
-fn gpu_light(light: &LightInWorld, origin_in_world: DVec3) -> types::Light {
-    let inverse_range_squared = |range: Option<f64>| range.map_or(0.0, |range| 1.0 / (range * range)) as f32;
-    let placed = types::Light {
-        position: (light.position_in_world - origin_in_world).as_vec3().to_array(),
-        w: 1.0,
-        intensity: light.intensity.as_vec3().to_array(),
-        direction: light.direction_in_world.as_vec3().to_array(),
-        spot_offset: 1.0,
-        ..Default::default()
-    };
-    match light.kind {
-        LightKind::Point { range_m } => {
-            types::Light { inverse_range_squared: inverse_range_squared(range_m), ..placed }
-        }
-        LightKind::Spot { range_m, inner_cone_rad, outer_cone_rad } => {
-            let scale = 1.0 / (inner_cone_rad.cos() - outer_cone_rad.cos()).max(1e-3);
-            types::Light {
-                inverse_range_squared: inverse_range_squared(range_m),
-                spot_scale: scale as f32,
-                spot_offset: (-outer_cone_rad.cos() * scale) as f32,
-                ..placed
-            }
-        }
-        LightKind::Directional => {
-            types::Light { position: (-light.direction_in_world).as_vec3().to_array(), w: 0.0, ..placed }
-        }
     }
 }

@@ -14,6 +14,7 @@ mod inspect;
 mod lights;
 mod lit_plane;
 mod lobe_tiers;
+mod many_lights;
 mod mutants;
 mod shaders;
 mod stability;
