@@ -6,5 +6,5 @@ pub mod formats;
 pub mod pipeline;
 mod readback;
 
-pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};
+pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, adapters, usable_features};
 pub use readback::{Readback, read_buffer, read_texel, read_texture};
