@@ -15,7 +15,9 @@ use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
     ForwardPipelines, ForwardTarget, draw,
 };
-use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, Topology, View};
+use crate::scene::{
+    Background, Camera, Channel, EnvironmentMaps, LightSource, Projection, Scene, ToneMap, Topology, View,
+};
 use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
 use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
 use glam::{DMat3, DVec2, DVec3, DVec4};
@@ -186,13 +188,15 @@ impl Renderer {
         let options = PlanOptions { samples: target.samples, culling: self.culling };
         let visible = state.plan_frame((device, queue), scene, view, options);
         let panorama = self.panorama((device, queue), scene, view, target, state)?;
+        let origin_in_world = scene.drawables.origin_in_world;
+        let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
         let uniform = frame_uniform(scene, view);
         let frame_group = state.frame.group(
             (device, queue),
             "frame",
             bytemuck::bytes_of(&uniform),
-            (scene.instances.clone(), visible),
-            |frame, (_, visible)| scene.frame_group(device, &self.shared, (frame, visible)),
+            (scene.instances.clone(), visible, clusters.as_ref().map(|clusters| clusters.table.clone())),
+            |frame, (_, visible, _)| scene.frame_group(device, &self.shared, (frame, visible), clusters.as_ref()),
         );
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
@@ -314,11 +318,19 @@ fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
         Projection::Perspective { .. } => (view.camera.position_in_world() - origin_in_world).extend(1.0),
         Projection::Orthographic { .. } => (-view.camera.forward_in_world()).extend(0.0),
     };
-    let [channel, channel_index, channel_components] = view.channel.map_or([0; 3], channel_uniform);
+    let lights = scene.lights.as_ref();
+    let channel = view.channel.map(|channel| match (channel, lights) {
+        // Lights are numbered as the scene has them.
+        (Channel::Radiance { source: LightSource::Light(light), components }, Some(lights)) => {
+            Channel::Radiance { source: LightSource::Light(lights.place(light)), components }
+        }
+        (other, _) => other,
+    });
+    let [channel, channel_index, channel_components] = channel.map_or([0; 3], channel_uniform);
     FrameUniform {
         clip_from_world: clip_from_origin(view, origin_in_world).to_cols_array_2d(),
         viewer: viewer.as_vec4().to_array(),
-        light_count: scene.light_count,
+        light_count: lights.map_or(0, |lights| lights.lit),
         channel,
         channel_index,
         channel_components,

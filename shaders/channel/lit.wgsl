@@ -14,6 +14,9 @@ fn radiance_channel(surface: Surface, position: vec3f) -> vec3f {
         case CHANNEL_LIGHT: {
             return radiance_of_light(lobes, position, frame.channel_index);
         }
+        case CHANNEL_LIGHT_COUNT: {
+            return vec3f(f32(punctual_count(position)));
+        }
         case CHANNEL_SUN: {
             return radiance_of_sun(lobes, frame.channel_index) * surface.occlusion;
         }

@@ -6,6 +6,7 @@ mod camera;
 mod color;
 mod compare;
 mod debug_view;
+mod doctor;
 mod driver;
 mod environment;
 mod error;
@@ -45,6 +46,8 @@ enum Command {
     Furnace(Box<furnace::FurnaceArgs>),
     /// Measure what settings cost in time and gain in error against the reference renderer.
     Bench(Box<bench::BenchArgs>),
+    /// Say which adapters there are, and what works less well on the one that is taken.
+    Doctor(doctor::DoctorArgs),
     /// Compare two pictures, PNG with PNG or EXR with EXR: pixels, PSNR, SSIM, FLIP.
     Compare(Box<compare::CompareArgs>),
     /// Regenerate the tables that are part of the program.
@@ -62,6 +65,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Furnace(args) => furnace::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),

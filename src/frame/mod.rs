@@ -1,6 +1,7 @@
 //! What will be drawn, decided on the CPU from scene and view alone: printable, testable, no GPU.
 
 mod boxes;
+mod clusters;
 mod cull;
 mod depth_order;
 mod drawables;
@@ -11,6 +12,7 @@ mod plan;
 mod tests;
 
 pub use boxes::Boxes;
+pub use clusters::{Clusters, Reach, clusters};
 pub use cull::{Culling, clip_from_origin};
 pub use drawables::{Drawable, Drawables, PlacedInstance, Placements};
 pub use identity::PrimitivePlace;

@@ -1,8 +1,8 @@
 //! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
 
 use crate::shader::{
-    MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING, SceneFeatures, Shading,
-    disney_binding, material_texture_binding,
+    LightList, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING,
+    SceneFeatures, Shading, disney_binding, material_texture_binding,
 };
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
 
@@ -16,6 +16,8 @@ pub const FRAME_ENVIRONMENT: u32 = 5;
 pub const FRAME_ATLAS: u32 = 6;
 pub const FRAME_FRESNEL_TAIL: u32 = 7;
 pub const FRAME_TAPS: u32 = 8;
+pub const FRAME_CLUSTERS: u32 = 9;
+pub const FRAME_CLUSTER_TABLE: u32 = 10;
 pub const FRAME_VISIBLE: u32 = 11;
 
 /// Group 0 of the forward pass: what the scene's light needs is bound, the rest has no binding.
@@ -29,7 +31,17 @@ pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
         entries.extend([texture(FRAME_DFG, true), sampler(FRAME_SAMPLER)]);
     }
     if features.punctual {
-        entries.push(buffer(FRAME_LIGHTS, ShaderStages::FRAGMENT, BufferBindingType::Storage { read_only: true }));
+        let ty = match features.light_list {
+            LightList::Few => BufferBindingType::Uniform,
+            _ => BufferBindingType::Storage { read_only: true },
+        };
+        entries.push(buffer(FRAME_LIGHTS, ShaderStages::FRAGMENT, ty));
+    }
+    if features.punctual && features.light_list.is_clustered() {
+        entries.extend([
+            buffer(FRAME_CLUSTERS, ShaderStages::FRAGMENT, BufferBindingType::Uniform),
+            buffer(FRAME_CLUSTER_TABLE, ShaderStages::FRAGMENT, BufferBindingType::Storage { read_only: true }),
+        ]);
     }
     if features.environment {
         entries.extend([

@@ -110,7 +110,17 @@ impl Gpu {
     }
 }
 
+/// All adapters that match, the one that [`Gpu::open`] takes first.
+pub fn adapters(request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
+    pollster::block_on(matching_adapters(request))
+}
+
 async fn choose_adapter(request: &GpuRequest) -> Result<wgpu::Adapter, GpuError> {
+    let adapters = matching_adapters(request).await?;
+    adapters.into_iter().next().ok_or_else(|| GpuError::NoAdapter { looked_at: "all backends".into() })
+}
+
+async fn matching_adapters(request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     if let Some(backends) = request.backends {
         descriptor.backends = backends;
@@ -130,7 +140,7 @@ async fn choose_adapter(request: &GpuRequest) -> Result<wgpu::Adapter, GpuError>
         }
     }
     adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
-    adapters.into_iter().next().ok_or_else(|| GpuError::NoAdapter { looked_at: format!("{backends:?}") })
+    Ok(adapters)
 }
 
 /// Lower is better.

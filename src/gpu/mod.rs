@@ -7,6 +7,6 @@ mod kept;
 pub mod pipeline;
 mod readback;
 
-pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, usable_features};
+pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, adapters, usable_features};
 pub use kept::KeptUniform;
 pub use readback::{Readback, read_buffer, read_texel, read_texture};

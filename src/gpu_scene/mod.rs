@@ -2,6 +2,7 @@
 
 mod environment;
 mod geometry;
+mod lights;
 mod materials;
 pub mod mips;
 mod pulled;
@@ -10,7 +11,7 @@ mod textures;
 
 use crate::frame::{Drawables, PlacedInstance, is_deferrable};
 use crate::gpu::bindings::{self, frame_layout};
-use crate::scene::{EnvironmentMaps, LightInWorld, LightKind, Scene};
+use crate::scene::{EnvironmentMaps, Scene};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
@@ -19,6 +20,8 @@ use wgpu::util::DeviceExt;
 
 pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
+pub(crate) use lights::GpuClusters;
+use lights::GpuLights;
 pub use pulled::PulledGeometry;
 pub use tables::Table;
 
@@ -62,7 +65,6 @@ pub struct GpuScene {
     pub bytes: UploadedBytes,
     /// Things that were drawn with less than was asked for.
     pub warnings: Vec<String>,
-    pub(crate) light_count: u32,
     pub(crate) vertices: wgpu::Buffer,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) instances: wgpu::Buffer,
@@ -71,7 +73,7 @@ pub struct GpuScene {
     pub(crate) material_layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
     /// For shading in a pass of its own, where that was asked for and can be.
     pub(crate) pulled: Option<PulledGeometry>,
-    pub(crate) lights: Option<wgpu::Buffer>,
+    pub(crate) lights: Option<GpuLights>,
     pub(crate) environment: Option<GpuEnvironment>,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
 }
@@ -106,8 +108,11 @@ impl GpuScene {
             (true, ..) => return Err(UploadError::MissingMaps),
             (false, ..) => None,
         };
-        let lights = scene.lights_in_world();
-        let light_data: Vec<types::Light> = lights.iter().map(|light| gpu_light(light, origin_in_world)).collect();
+        let lights = if features.punctual {
+            Some(GpuLights::new(device, &scene.lights_in_world(), origin_in_world, features.light_list)?)
+        } else {
+            None
+        };
         let instance_data: Vec<types::Instance> =
             drawables.instances.iter().map(|placed| gpu_instance(placed, origin_in_world)).collect();
         let storage = |label, contents: &[u8]| {
@@ -124,9 +129,8 @@ impl GpuScene {
                 environment: environment.as_ref().map_or(0, GpuEnvironment::bytes),
             },
             warnings,
-            light_count: lights.len() as u32,
             instances: storage("instances", bytemuck::cast_slice(&instance_data)),
-            lights: features.punctual.then(|| storage("lights", bytemuck::cast_slice(&light_data))),
+            lights,
             draws: geometry.primitives.into_iter().zip(materials.groups).map(GpuDraw::new).collect(),
             drawables,
             vertices: geometry.vertices,
@@ -147,12 +151,13 @@ impl GpuScene {
         }
     }
 
-    /// Group 0 of the forward pass, with the uniform of one view and its list of visible instances.
+    /// Group 0 of the forward pass, with the uniform of one view, its list of visible instances and its clusters.
     pub(crate) fn frame_group(
         &self,
         device: &wgpu::Device,
         shared: &SharedTextures,
         (frame, visible): (&wgpu::Buffer, &wgpu::Buffer),
+        clusters: Option<&GpuClusters>,
     ) -> wgpu::BindGroup {
         let mut entries = vec![
             entry(bindings::FRAME_UNIFORM, frame.as_entire_binding()),
@@ -164,7 +169,11 @@ impl GpuScene {
             entries.push(entry(bindings::FRAME_SAMPLER, wgpu::BindingResource::Sampler(&shared.clamp_sampler)));
         }
         if let Some(lights) = &self.lights {
-            entries.push(entry(bindings::FRAME_LIGHTS, lights.as_entire_binding()));
+            entries.push(entry(bindings::FRAME_LIGHTS, lights.buffer.as_entire_binding()));
+        }
+        if let Some(clusters) = clusters {
+            entries.push(entry(bindings::FRAME_CLUSTERS, clusters.uniform.as_entire_binding()));
+            entries.push(entry(bindings::FRAME_CLUSTER_TABLE, clusters.table.as_entire_binding()));
         }
         if let Some(environment) = &self.environment {
             entries.push(entry(bindings::FRAME_ENVIRONMENT, environment.uniform.as_entire_binding()));
@@ -202,34 +211,5 @@ fn gpu_instance(placed: &PlacedInstance, origin_in_world: DVec3) -> types::Insta
         normal_from_object: cofactor.map(|column| (column * scale).extend(0.0).as_vec4().to_array()),
         handedness: sign as f32,
         ..Default::default()
-    }
-}
-
-fn gpu_light(light: &LightInWorld, origin_in_world: DVec3) -> types::Light {
-    let inverse_range_squared = |range: Option<f64>| range.map_or(0.0, |range| 1.0 / (range * range)) as f32;
-    let placed = types::Light {
-        position: (light.position_in_world - origin_in_world).as_vec3().to_array(),
-        w: 1.0,
-        intensity: light.intensity.as_vec3().to_array(),
-        direction: light.direction_in_world.as_vec3().to_array(),
-        spot_offset: 1.0,
-        ..Default::default()
-    };
-    match light.kind {
-        LightKind::Point { range_m } => {
-            types::Light { inverse_range_squared: inverse_range_squared(range_m), ..placed }
-        }
-        LightKind::Spot { range_m, inner_cone_rad, outer_cone_rad } => {
-            let scale = 1.0 / (inner_cone_rad.cos() - outer_cone_rad.cos()).max(1e-3);
-            types::Light {
-                inverse_range_squared: inverse_range_squared(range_m),
-                spot_scale: scale as f32,
-                spot_offset: (-outer_cone_rad.cos() * scale) as f32,
-                ..placed
-            }
-        }
-        LightKind::Directional => {
-            types::Light { position: (-light.direction_in_world).as_vec3().to_array(), w: 0.0, ..placed }
-        }
     }
 }

@@ -7,7 +7,8 @@ use crate::scene::{
     Geometry, Material, Primitive, Quality, Scene, Texture, TextureRef, TextureSlot, Topology, UvTransform,
 };
 use crate::shader::{
-    ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Slot, Slots, VertexFeatures, forward_slots,
+    ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Slot, Slots, VertexFeatures,
+    forward_slots,
 };
 use std::fmt::Write;
 
@@ -131,6 +132,12 @@ fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
 
 /// One bounce, one light: what a lobe is proven by.
 pub(super) fn plain_metal() -> ForwardFeatures {
-    let scene = SceneFeatures { punctual: true, environment: false, suns: false, fresnel_tail: false };
+    let scene = SceneFeatures {
+        punctual: true,
+        light_list: LightList::All,
+        environment: false,
+        suns: false,
+        fresnel_tail: false,
+    };
     ForwardFeatures { energy_compensation: false, ..features(scene, Material::default()) }
 }

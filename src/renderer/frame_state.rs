@@ -23,7 +23,8 @@ pub struct FrameState {
     /// The instances of the scene that the rest is about: they tell scenes apart.
     scene: Option<wgpu::Buffer>,
     visible: Option<VisibleList>,
-    pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer)>,
+    /// Beside the uniform: instances, which of them are visible, and clusters of lights.
+    pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer, Option<wgpu::Buffer>)>,
     pub(super) background: KeptUniform<wgpu::TextureView>,
     pub(super) display: KeptUniform<wgpu::TextureView>,
     pub(super) deferred: Option<DeferredGroups>,

@@ -163,6 +163,9 @@ pub enum Channel {
         source: LightSource,
         components: Components,
     },
+    /// How many punctual lights are looked at for the surface: those that its place in the view lists, whether or not they
+    /// reach it.
+    LightCount,
     /// Faults of the radiance before it is clamped: red is 1 where it is no number, green where it is infinite, blue
     /// where it is negative.
     Nan,
@@ -178,6 +181,7 @@ impl Channel {
             radiance("direct-specular", Punctual, Components::SPECULAR),
             radiance("ibl-diffuse", Environment, Components::DIFFUSE),
             radiance("ibl-specular", Environment, Components::SPECULAR),
+            ("light-count", Self::LightCount),
             ("nan", Self::Nan),
         ];
         Input::ALL.into_iter().map(|input| (input.name(), Self::Input(input))).chain(light)
@@ -197,7 +201,7 @@ mod tests {
     #[test]
     fn every_channel_has_a_name_of_its_own() {
         let names: BTreeSet<_> = Channel::named().map(|(name, _)| name).collect();
-        assert_eq!(names.len(), Input::ALL.len() + 5);
+        assert_eq!(names.len(), Input::ALL.len() + 6);
         assert!(Channel::named().all(|(name, channel)| Channel::by_name(name) == Some(channel)));
         assert_eq!(Channel::by_name("radiance"), None);
     }

@@ -38,6 +38,26 @@ pub struct LightInWorld {
     pub direction_in_world: DVec3,
 }
 
+impl LightInWorld {
+    /// Where the light ends, metres; `None` where it does not, or so far out that 32-bit floats have no number for it.
+    pub fn finite_range_m(&self) -> Option<f64> {
+        let range_m = match self.kind {
+            LightKind::Point { range_m } | LightKind::Spot { range_m, .. } => range_m?,
+            LightKind::Directional => return None,
+        };
+        (inverse_square(range_m) > 0.0).then_some(range_m)
+    }
+
+    /// One over the square of [`Self::finite_range_m`], 1/m^2; 0 without.
+    pub fn inverse_range_squared(&self) -> f32 {
+        self.finite_range_m().map_or(0.0, inverse_square)
+    }
+}
+
+fn inverse_square(range_m: f64) -> f32 {
+    (1.0 / (range_m * range_m)) as f32
+}
+
 /// White lights of known strength. All of these fail only where the light is too strong for 32-bit floats.
 impl Light {
     /// A point light that emits `flux` in all: I = Phi / 4 pi.

@@ -11,6 +11,7 @@ mod environment;
 pub mod framing;
 mod image;
 mod light;
+pub mod light_field;
 mod material;
 mod mesh;
 pub mod shapes;

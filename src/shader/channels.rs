@@ -11,6 +11,7 @@ const ENVIRONMENT: u32 = 102;
 const SKY: u32 = 103;
 const SUN: u32 = 104;
 const NAN: u32 = 105;
+const LIGHT_COUNT: u32 = 106;
 
 /// `channel`, `channel_index` and `channel_components` of the frame's uniform.
 pub fn channel_uniform(channel: Channel) -> [u32; 3] {
@@ -26,6 +27,7 @@ pub fn channel_uniform(channel: Channel) -> [u32; 3] {
             };
             [number, index, components.bits()]
         }
+        Channel::LightCount => [LIGHT_COUNT, 0, 0],
         Channel::Nan => [NAN, 0, 0],
     }
 }
@@ -40,6 +42,7 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
         ("SKY", SKY),
         ("SUN", SUN),
         ("NAN", NAN),
+        ("LIGHT_COUNT", LIGHT_COUNT),
     ];
     // Writing to a String cannot fail.
     for (name, number) in numbers {
@@ -153,8 +156,12 @@ mod tests {
         ];
         let radiance = sources.map(|source| Channel::Radiance { source, components: Components::SPECULAR });
         let inputs = Input::ALL.map(Channel::Input);
-        let all: Vec<[u32; 3]> =
-            inputs.into_iter().chain(radiance).chain([Channel::Nan]).map(channel_uniform).collect();
+        let all: Vec<[u32; 3]> = inputs
+            .into_iter()
+            .chain(radiance)
+            .chain([Channel::LightCount, Channel::Nan])
+            .map(channel_uniform)
+            .collect();
         assert_eq!(all.iter().map(|uniform| uniform[0]).collect::<BTreeSet<_>>().len(), all.len());
         assert_eq!(channel_uniform(radiance[1]), [LIGHT, 3, Components::SPECULAR.bits()]);
     }

@@ -28,6 +28,8 @@ pub enum Alpha {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SceneFeatures {
     pub punctual: bool,
+    /// How lights are found, where there are any.
+    pub light_list: LightList,
     pub environment: bool,
     /// Some metal's Fresnel curve is not Schlick's, so a table of the difference is bound.
     pub fresnel_tail: bool,
@@ -35,12 +37,52 @@ pub struct SceneFeatures {
     pub suns: bool,
 }
 
+/// The fewest lights with a range that are sorted into clusters: of so many, the loop over all takes longer where half of
+/// them reach a pixel (docs/performance.md, "Many lights").
+const CLUSTERED_FROM: usize = 16;
+/// The most lights that are bound as a uniform, which software drivers read faster than a storage buffer.
+pub const FEW_LIGHTS: usize = 64;
+
+/// How shaders find the punctual lights that reach a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum LightList {
+    /// All of them, [`FEW_LIGHTS`] at most.
+    Few,
+    /// All of them.
+    All,
+    /// Those of the point's cluster of the view: every light has a range.
+    Clustered,
+    /// The same, after those that have no range.
+    ClusteredAndUnbounded,
+}
+
+impl LightList {
+    /// Of so many lights, of which so many shine, and of those so many have a range.
+    fn of(lights: usize, lit: usize, with_range: usize) -> Self {
+        match (with_range >= CLUSTERED_FROM, with_range == lit) {
+            (true, true) => Self::Clustered,
+            (true, false) => Self::ClusteredAndUnbounded,
+            (false, _) if lights <= FEW_LIGHTS => Self::Few,
+            (false, _) => Self::All,
+        }
+    }
+
+    /// Whether lights are sorted into clusters.
+    pub fn is_clustered(self) -> bool {
+        matches!(self, Self::Clustered | Self::ClusteredAndUnbounded)
+    }
+}
+
 impl SceneFeatures {
     /// What `scene` says; `suns` is for its environment's maps to tell.
     pub fn of(scene: &Scene) -> Self {
+        let lights = scene.lights_in_world();
+        let lit = || lights.iter().filter(|light| light.intensity != glam::DVec3::ZERO);
+        let with_range = lit().filter(|light| light.finite_range_m().is_some()).count();
         Self {
             suns: false,
-            punctual: scene.lights_in_world().iter().any(|light| light.intensity != glam::DVec3::ZERO),
+            punctual: lit().next().is_some(),
+            light_list: LightList::of(lights.len(), lit().count(), with_range),
             environment: scene.lit_environment().is_some(),
             fresnel_tail: scene
                 .materials
@@ -281,6 +323,9 @@ impl fmt::Display for ForwardFeatures {
         let lit = self.material.shading.is_lit();
         let flags = [
             (lit && self.scene.punctual, "punctual"),
+            (lit && self.scene.punctual && self.scene.light_list == LightList::All, "many"),
+            (lit && self.scene.punctual && self.scene.light_list.is_clustered(), "clustered"),
+            (lit && self.scene.light_list == LightList::ClusteredAndUnbounded, "unbounded"),
             (lit && self.scene.environment, "environment"),
             (lit && !self.energy_compensation, "single_scatter"),
             (lit && self.scene.suns, "suns"),

@@ -17,8 +17,8 @@ pub mod types;
 pub use channels::{channel_is_read, channel_uniform};
 pub use compose::{Composed, ShaderError, Slot, Slots, compose};
 pub use features::{
-    Alpha, ForwardFeatures, FresnelFeature, MaterialFeatures, SceneFeatures, Shading, TextureUse, VertexFeatures,
-    material_samplers,
+    Alpha, FEW_LIGHTS, ForwardFeatures, FresnelFeature, LightList, MaterialFeatures, SceneFeatures, Shading,
+    TextureUse, VertexFeatures, material_samplers,
 };
 pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, disney_binding, material_texture_binding,

@@ -1,7 +1,7 @@
 //! Which file fills which slot, for each pass.
 
 use super::compose::{Composed, ShaderError, Slot, Slots, compose};
-use super::features::{Alpha, ForwardFeatures, FresnelFeature, Shading};
+use super::features::{Alpha, ForwardFeatures, FresnelFeature, LightList, Shading};
 use super::interface::Gradients;
 use super::sources::ShaderSources;
 use super::{channels, interface, pulled, types};
@@ -89,7 +89,23 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
             }),
         ),
         ("lobes", choose(material.shading == Shading::Disney, "lighting/disney.wgsl", "lighting/lobes.wgsl")),
-        ("punctual", choose(punctual, "lighting/punctual.wgsl", "lighting/punctual_none.wgsl")),
+        (
+            "punctual",
+            Slot::File(match (punctual, scene.light_list.is_clustered()) {
+                (false, _) => "lighting/punctual_none.wgsl",
+                (true, false) => "lighting/punctual.wgsl",
+                (true, true) => "lighting/punctual_clustered.wgsl",
+            }),
+        ),
+        ("lights", choose(scene.light_list == LightList::Few, "lighting/lights_few.wgsl", "lighting/lights.wgsl")),
+        (
+            "unbounded",
+            choose(
+                scene.light_list == LightList::ClusteredAndUnbounded,
+                "lighting/unbounded.wgsl",
+                "lighting/unbounded_none.wgsl",
+            ),
+        ),
         (
             "environment",
             match (environment, material.shading) {

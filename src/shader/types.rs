@@ -56,6 +56,24 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// From a point of the scene to its cluster, and what no cluster lists.
+    pub struct ClusterUniform {
+        /// To clip space with x and y in tiles, from the left and from below.
+        tiles_from_world: mat4x4f,
+        /// The slice of a point is the logarithm of its w times the first, plus its z times the second, plus the third.
+        slice_per_octave: f32,
+        slice_per_clip_z: f32,
+        slice_bias: f32,
+        /// Lights that reach everything; they come first.
+        unbounded: u32,
+        columns: u32,
+        rows: u32,
+        slices: u32,
+        pad_0: u32,
+    }
+}
+
+gpu_struct! {
     /// The environment as shading reads it.
     pub struct EnvironmentUniform {
         /// Premultiplied coefficients, see `scene::EnvironmentMaps`, times the intensity.
@@ -172,6 +190,7 @@ pub const ALL: &[Declaration] = &[
     ("FrameUniform", FrameUniform::WGSL, FrameUniform::FIELDS, size_of::<FrameUniform>()),
     ("Instance", Instance::WGSL, Instance::FIELDS, size_of::<Instance>()),
     ("Light", Light::WGSL, Light::FIELDS, size_of::<Light>()),
+    ("ClusterUniform", ClusterUniform::WGSL, ClusterUniform::FIELDS, size_of::<ClusterUniform>()),
     ("EnvironmentUniform", EnvironmentUniform::WGSL, EnvironmentUniform::FIELDS, size_of::<EnvironmentUniform>()),
     ("MaterialUniform", MaterialUniform::WGSL, MaterialUniform::FIELDS, size_of::<MaterialUniform>()),
     ("DisneyUniform", DisneyUniform::WGSL, DisneyUniform::FIELDS, size_of::<DisneyUniform>()),

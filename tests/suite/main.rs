@@ -15,6 +15,7 @@ mod inspect;
 mod lights;
 mod lit_plane;
 mod lobe_tiers;
+mod many_lights;
 mod mutants;
 mod paths;
 mod shaders;

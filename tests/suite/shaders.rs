@@ -11,7 +11,7 @@ use specula::scene::{
     TextureSlot, ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
-    Composed, DisplayFeatures, ForwardFeatures, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
+    Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
     VertexFeatures, background_module, covered_module, deferred_module, display_module, forward_module,
     visibility_module,
 };
@@ -35,6 +35,9 @@ pub(crate) fn term_features() -> Vec<ForwardFeatures> {
     forward_features().iter().step_by(7).flat_map(of_term).collect()
 }
 
+const LIGHT_LISTS: [LightList; 4] =
+    [LightList::Few, LightList::All, LightList::Clustered, LightList::ClusteredAndUnbounded];
+
 /// A material under every kind of light.
 fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [ForwardFeatures; 4] {
     let scene = Scene {
@@ -47,6 +50,7 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
     [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
         let scene_features = SceneFeatures {
             punctual,
+            light_list: LIGHT_LISTS[(slots / 2) as usize % 4],
             environment,
             fresnel_tail: !slots.is_multiple_of(3),
             suns: environment && slots % 2 == 1,

@@ -7,7 +7,7 @@ use crate::gpu_scene::{GpuEnvironment, SharedTextures};
 use crate::progress::Silent;
 use crate::renderer::{shared_textures, table};
 use crate::scene::{AlphaMode, Disney, Environment, EnvironmentImage, Geometry, Material, MetalFresnel, Quality};
-use crate::shader::{ForwardFeatures, FresnelFeature, SceneFeatures, Shading};
+use crate::shader::{ForwardFeatures, FresnelFeature, LightList, SceneFeatures, Shading};
 use glam::Vec3;
 
 /// A forward shader that is searched for faults. A feature joins by a line in [`FUZZED`].
@@ -19,8 +19,10 @@ pub struct FuzzedShader {
     pub environment_nits: f32,
 }
 
-const LIT: SceneFeatures = SceneFeatures { punctual: true, environment: true, suns: true, fresnel_tail: true };
-const BY_LIGHTS: SceneFeatures = SceneFeatures { punctual: true, environment: false, suns: false, fresnel_tail: false };
+const LIT: SceneFeatures =
+    SceneFeatures { punctual: true, light_list: LightList::All, environment: true, suns: true, fresnel_tail: true };
+const BY_LIGHTS: SceneFeatures =
+    SceneFeatures { punctual: true, light_list: LightList::All, environment: false, suns: false, fresnel_tail: false };
 
 /// All that are searched.
 pub const FUZZED: &[FuzzedShader] = &[
