@@ -143,7 +143,8 @@ fn choose_tier(
 ) -> Result<Option<TierStats>, CliError> {
     let Some(gpu) = gpu.filter(|_| args.tier.is_asked()) else { return Ok(None) };
     let options = args.driver.capture_options();
-    let (quality, stats) = args.tier.choose(gpu, (scene, view), options, (progress, warnings))?;
+    let (quality, stats) =
+        args.tier.choose((gpu, args.subject.cache()), (scene, view), options, (progress, warnings))?;
     view.quality = quality;
     progress.finish();
     if !args.quiet {

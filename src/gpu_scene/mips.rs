@@ -38,13 +38,15 @@ pub struct Level {
 
 /// Level 0 and, with `mipmapped`, all smaller ones, from the first that is not larger than `max_side` on.
 ///
-/// 8-bit images give RGBA8 levels, encoded as they came; 16-bit ones linear RGBA16F.
+/// 8-bit images give RGBA8 levels, encoded as they came; 16-bit ones linear RGBA16F. Normals are signed: in bytes, code 0
+/// of the image is -128; else [-1, 1] in the same steps, from -257/254 on.
 pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<Level> {
     let fits = |width: u32, height: u32| width.max(height) <= max_side;
     let (mut width, mut height) = (image.width, image.height);
     let mut levels = Vec::new();
     if let (Pixels::Rgba8(bytes), true) = (&image.pixels, fits(width, height)) {
-        levels.push(Level { width, height, bytes: bytes.to_vec() });
+        let bytes = if role == Role::Normal { bytes.iter().map(signed).collect() } else { bytes.to_vec() };
+        levels.push(Level { width, height, bytes });
         if !mipmapped || width.max(height) == 1 {
             return levels;
         }
@@ -96,6 +98,11 @@ fn weigh(texel: Vec4, role: Role) -> Vec4 {
     }
 }
 
+/// A code in excess-128 as a two's complement: 0 becomes -128, which samplers read as -1 like -127.
+fn signed(code: &u8) -> u8 {
+    code ^ 0x80
+}
+
 /// Undoes [`weigh`] after averaging.
 fn unweigh(texel: Vec4, role: Role) -> Vec4 {
     match role {
@@ -141,12 +148,15 @@ fn encode(texels: &[Vec4], width: u32, height: u32, image: &Image, role: Role) -
             };
             let encode = |texel: &Vec4| {
                 let [r, g, b, a] = unweigh(*texel, role).to_array();
-                [color(r), color(g), color(b), code(a)]
+                let texel = [color(r), color(g), color(b), code(a)];
+                if role == Role::Normal { texel.map(|code| signed(&code)) } else { texel }
             };
             texels.par_iter().flat_map_iter(encode).collect()
         }
         Pixels::Rgba16(_) => {
-            let encode = |texel: &Vec4| unweigh(*texel, role).to_array().map(half::f16::from_f32);
+            // As signed bytes are read, so that the shader need not tell them apart.
+            let as_bytes = |texel: Vec4| if role == Role::Normal { (texel * 255.0 - 128.0) / 127.0 } else { texel };
+            let encode = |texel: &Vec4| as_bytes(unweigh(*texel, role)).to_array().map(half::f16::from_f32);
             let halves: Vec<half::f16> = texels.par_iter().flat_map_iter(encode).collect();
             bytemuck::cast_slice(&halves).to_vec()
         }
@@ -196,8 +206,8 @@ mod tests {
     fn normals_stay_unit_vectors() {
         let bumps = image(2, 2, |x, _| if x == 0 { [255, 128, 128, 255] } else { [128, 128, 255, 255] });
         let level = &chain(&bumps, Role::Normal, true, 4096)[1];
-        let n =
-            Vec3::new(f32::from(level.bytes[0]), f32::from(level.bytes[1]), f32::from(level.bytes[2])) / 127.5 - 1.0;
+        let code = |i: usize| f32::from(level.bytes[i] ^ 0x80);
+        let n = Vec3::new(code(0), code(1), code(2)) / 127.5 - 1.0;
         assert!((n.length() - 1.0).abs() < 0.01, "{n}");
     }
 

@@ -81,6 +81,7 @@ fn upload(
 ) -> wgpu::Texture {
     let format = match image.pixels {
         Pixels::Rgba16(_) => formats::DEEP_TEXTURE,
+        Pixels::Rgba8(_) if role == Role::Normal => formats::NORMAL_TEXTURE,
         Pixels::Rgba8(_) if role.is_srgb() => formats::COLOR_TEXTURE,
         Pixels::Rgba8(_) => formats::DATA_TEXTURE,
     };
