@@ -6,7 +6,7 @@
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{FramePlan, plan};
 use crate::gpu::formats;
-use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
 use crate::math::color::linear_from_srgb;
 use crate::passes::{BackgroundPipeline, DisplayPipelines, ForwardPipelines, ForwardTarget, draw};
 use crate::scene::{Background, Camera, EnvironmentMaps, Projection, Scene, ToneMap, View};
@@ -85,7 +85,19 @@ impl Renderer {
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        Ok(GpuScene::new(device, queue, scene, maps, &table(&disney::TABLE))?)
+        self.upload_with(device, queue, scene, TextureLevels::of(scene), maps)
+    }
+
+    /// [`Self::upload`] with levels of its textures that were made while there was no device.
+    pub fn upload_with<'a>(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &'a Scene,
+        levels: TextureLevels<'a>,
+        maps: Option<&EnvironmentMaps>,
+    ) -> Result<GpuScene, RenderError> {
+        Ok(GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?)
     }
 
     /// Makes the pipelines that this view needs, so that [`Self::encode_radiance`] compiles nothing.

@@ -23,7 +23,7 @@ use crate::metrics::truth::RelativeError;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::scene::{Quality, Scene, View};
-pub(super) use clock::{Basis, median_ms};
+pub(super) use clock::{Basis, median_ms, process_ms};
 use clock::{FrameTimes, median_times};
 use report::{DisplayRow, Row, TermRow, TruthReport};
 pub(super) use settings::Setting;
@@ -81,7 +81,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("bench measures the GPU against the reference; leave out --renderer".into()));
     }
     let progress = StderrProgress::new(args.quiet);
-    let (scene, warnings) = args.subject.load(&progress, &mut Stopwatch::default())?;
+    let (scene, warnings) = args.subject.load(&progress, &Stopwatch::default())?;
     let view = args.view.view(&scene, args.subject.has_panorama())?;
     // Float targets are among the settings.
     let gpu = Gpu::open(&args.driver.request(), GpuOptions { precision: Precision::Float });

@@ -5,6 +5,7 @@ use super::driver::DriverArgs;
 use super::environment::{CacheUse, bake_maps};
 use super::error::CliError;
 use super::output::{self, Format};
+use super::parallel::beside;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, GpuStats, RenderStats, Stopwatch};
 use super::subject::SubjectArgs;
@@ -14,6 +15,7 @@ use super::view::ViewArgs;
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
 use crate::gpu::Gpu;
 use crate::gpu::formats::Precision;
+use crate::gpu_scene::TextureLevels;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
@@ -89,21 +91,27 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("--max-error and --max-ms choose a tier of the GPU; leave out --renderer".into()));
     }
     let progress = StderrProgress::new(args.quiet);
-    let mut watch = Stopwatch::default();
-    let (scene, mut warnings) = args.subject.load(&progress, &mut watch)?;
+    let watch = Stopwatch::default();
+    let mut warnings_of_device = Vec::new();
+    let (loaded, gpu) = beside(
+        || args.subject.load(&progress, &watch),
+        || watch.time("device", || args.driver.open(&mut warnings_of_device)),
+    );
+    let (scene, mut warnings) = loaded?;
     let mut view = args.view.view(&scene, args.subject.has_panorama())?;
-    let gpu = watch.time("device", || args.driver.open(&mut warnings))?;
+    let gpu = gpu?;
+    warnings.extend(warnings_of_device);
     let tier = watch
         .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
     view.channel = args.debug_view;
     let rendered = match gpu {
-        Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &mut watch))?,
+        Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &watch))?,
         None if args.debug_view.is_some() => {
             return Err(CliError::Usage(
                 "--debug-view shows what shaders compute; it needs a GPU or a software driver".into(),
             ));
         }
-        None => trace(args, &scene, &view, format, (&progress, &mut watch)),
+        None => trace(args, &scene, &view, format, (&progress, &watch)),
     };
     progress.finish();
     warnings.extend(rendered.warnings);
@@ -172,15 +180,18 @@ fn draw(
     scene: &Scene,
     view: &View,
     format: Format,
-    (progress, watch): (&dyn Progress, &mut Stopwatch),
+    (progress, watch): (&dyn Progress, &Stopwatch),
 ) -> Result<Rendered, CliError> {
     let target = CaptureTarget::new(gpu, view, args.driver.capture_options())?;
-    let baked = watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress));
+    let (baked, levels) = beside(
+        || watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress)),
+        || watch.time("mips", || TextureLevels::of(scene)),
+    );
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
         let renderer = Renderer::new(device, queue);
         let uploaded = renderer
-            .upload(device, queue, scene, baked.as_ref().map(|baked| &baked.maps))
+            .upload_with(device, queue, scene, levels, baked.as_ref().map(|baked| &baked.maps))
             .map_err(CaptureError::from)?;
         Ok((renderer, uploaded))
     })?;
@@ -242,7 +253,7 @@ fn trace(
     scene: &Scene,
     view: &View,
     format: Format,
-    (progress, watch): (&dyn Progress, &mut Stopwatch),
+    (progress, watch): (&dyn Progress, &Stopwatch),
 ) -> Rendered {
     let truth = watch.time("reference render", || estimate(scene, view, &args.truth.options(progress)));
     let picture = match format {

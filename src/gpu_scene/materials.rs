@@ -1,9 +1,8 @@
 //! Material uniforms and bind groups: one a material and set of features, with only what those features read.
 
 use super::entry;
-use super::mips::Role;
 use super::tables::Table;
-use super::textures::TextureCache;
+use super::textures::{TextureCache, TextureLevels, textures_of};
 use crate::frame::Drawables;
 use crate::gpu::bindings::material_layout;
 use crate::scene::{AlphaMode, Disney, Material, MetalFresnel, Scene, TextureSlot};
@@ -23,14 +22,15 @@ pub(crate) struct Materials {
 }
 
 /// Uploads what the draws read. Returns the groups, the bytes of all textures, and warnings.
-pub(crate) fn upload(
+pub(crate) fn upload<'a>(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    scene: &Scene,
+    scene: &'a Scene,
     drawables: &Drawables,
+    levels: TextureLevels<'a>,
     disney_table: &Table,
 ) -> (Materials, u64, Vec<String>) {
-    let mut cache = TextureCache::default();
+    let mut cache = TextureCache::new(levels);
     let mut materials = Materials::default();
     let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
     let disney_table = reads_table.then(|| disney_table.upload(device, queue));
@@ -46,11 +46,11 @@ pub(crate) fn upload(
     (materials, cache.bytes, cache.warnings)
 }
 
-fn bind(
+fn bind<'a>(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    scene: &Scene,
-    (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
+    scene: &'a Scene,
+    (cache, disney_table): (&mut TextureCache<'a>, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
     (index, features): (usize, MaterialFeatures),
 ) -> wgpu::BindGroup {
@@ -62,14 +62,8 @@ fn bind(
         .into_iter()
         .map(|sampler| cache.sampler(device, sampler))
         .collect();
-    let views: Vec<wgpu::TextureView> = features
-        .textures()
-        .filter_map(|(slot, _)| Some((slot, scene.textures[material.texture(slot)?.texture])))
-        .map(|(slot, texture)| {
-            let mipmapped = texture.sampler.mip_linear.is_some();
-            cache.view(device, queue, scene, (texture.image, role(slot, material), mipmapped))
-        })
-        .collect();
+    let textures = textures_of(scene, material, &features).into_iter();
+    let views: Vec<wgpu::TextureView> = textures.map(|key| cache.view(device, queue, scene, key)).collect();
     let mut entries = vec![entry(MATERIAL_UNIFORM_BINDING, uniform.as_entire_binding())];
     for (index, sampler) in samplers.iter().enumerate() {
         let binding = MATERIAL_SAMPLER_BINDING + index as u32;
@@ -106,15 +100,6 @@ fn disney_uniform(disney: &Disney) -> types::DisneyUniform {
         sheen_tint: disney.sheen_tint,
         clearcoat: disney.clearcoat,
         clearcoat_gloss: disney.clearcoat_gloss,
-    }
-}
-
-fn role(slot: TextureSlot, material: &Material) -> Role {
-    match slot {
-        TextureSlot::Normal => Role::Normal,
-        TextureSlot::BaseColor if material.alpha_mode != AlphaMode::Opaque => Role::ColorWithCoverage,
-        slot if slot.is_srgb() => Role::Color,
-        _ => Role::Data,
     }
 }
 

@@ -19,6 +19,7 @@ use wgpu::util::DeviceExt;
 pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
 pub use tables::Table;
+pub use textures::TextureLevels;
 
 /// Why a scene cannot be put on this device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -70,12 +71,13 @@ pub struct SharedTextures {
 }
 
 impl GpuScene {
-    /// Uploads `scene`. `maps` are baked from its environment and needed when it has one; `disney_table` goes to the GPU
-    /// when something reads it.
-    pub fn new(
+    /// Uploads `scene` with the `levels` of its textures. `maps` are baked from its environment and needed when it has
+    /// one; `disney_table` goes to the GPU when something reads it.
+    pub fn new<'a>(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        scene: &Scene,
+        scene: &'a Scene,
+        levels: TextureLevels<'a>,
         maps: Option<&EnvironmentMaps>,
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
@@ -85,7 +87,8 @@ impl GpuScene {
         let bounds = scene.bounds();
         let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
         let geometry = upload_primitives(device, scene, &drawables)?;
-        let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables, disney_table);
+        let (materials, texture_bytes, warnings) =
+            materials::upload(device, queue, scene, &drawables, levels, disney_table);
         let environment = match (features.environment, &scene.environment, maps) {
             (true, Some(environment), Some(maps)) => Some(GpuEnvironment::new(device, queue, environment, maps)?),
             (true, ..) => return Err(UploadError::MissingMaps),
