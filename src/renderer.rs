@@ -1,7 +1,7 @@
 //! The facade: scenes in, passes recorded.
 //!
-//! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
-//! caller's encoder.
+//! [`Renderer`] holds what lives as long as the device. It never polls or prints, and frames it records into the
+//! caller's encoder; only uploads are submitted.
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{FramePlan, plan};
@@ -85,16 +85,18 @@ impl Renderer {
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        self.upload_with(device, queue, scene, TextureLevels::of(scene), maps)
+        let levels = TextureLevels::of(scene, device.limits().max_texture_dimension_2d);
+        self.upload_with(device, queue, scene, levels, maps)
     }
 
-    /// [`Self::upload`] with levels of its textures that were made while there was no device.
-    pub fn upload_with<'a>(
+    /// [`Self::upload`] with levels of its textures that were made beside other work. Of the scene's images only the
+    /// sizes are read.
+    pub fn upload_with(
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        scene: &'a Scene,
-        levels: TextureLevels<'a>,
+        scene: &Scene,
+        levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
         Ok(GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?)

@@ -20,7 +20,7 @@ use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
-use crate::scene::{Channel, RadianceImage, Scene, View};
+use crate::scene::{Channel, Image, RadianceImage, Scene, View};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
@@ -97,7 +97,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         || args.subject.load(&progress, &watch),
         || watch.time("device", || args.driver.open(&mut warnings_of_device)),
     );
-    let (scene, mut warnings) = loaded?;
+    let (mut scene, mut warnings) = loaded?;
     let mut view = args.view.view(&scene, args.subject.has_panorama())?;
     let gpu = gpu?;
     warnings.extend(warnings_of_device);
@@ -105,7 +105,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
     view.channel = args.debug_view;
     let rendered = match gpu {
-        Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &watch))?,
+        Some(gpu) => draw(args, &gpu, &mut scene, &view, format, (&progress, &watch))?,
         None if args.debug_view.is_some() => {
             return Err(CliError::Usage(
                 "--debug-view shows what shaders compute; it needs a GPU or a software driver".into(),
@@ -177,16 +177,19 @@ fn report(args: &RenderArgs, stats: &RenderStats) -> Result<(), CliError> {
 fn draw(
     args: &RenderArgs,
     gpu: &Gpu,
-    scene: &Scene,
+    scene: &mut Scene,
     view: &View,
     format: Format,
     (progress, watch): (&dyn Progress, &Stopwatch),
 ) -> Result<Rendered, CliError> {
     let target = CaptureTarget::new(gpu, view, args.driver.capture_options())?;
+    let max_side = gpu.device.limits().max_texture_dimension_2d;
     let (baked, levels) = beside(
         || watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress)),
-        || watch.time("mips", || TextureLevels::of(scene)),
+        || watch.time("mips", || TextureLevels::of(scene, max_side)),
     );
+    // Each texture's are in memory only until it is uploaded.
+    scene.images.iter_mut().for_each(Image::forget_texels);
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
         let renderer = Renderer::new(device, queue);

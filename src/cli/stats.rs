@@ -77,6 +77,15 @@ pub(super) struct Stage {
     /// Of the processors, while the stage ran: of all threads of the process, so of stages beside it too. None where the
     /// system does not tell.
     pub(super) processor: Option<f64>,
+    /// Most memory that the process has held until the stage was done. None where the system does not tell.
+    pub(super) peak_bytes: Option<u64>,
+}
+
+/// Most memory that this process has held so far, on Linux (VmHWM of proc(5)).
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let kibibytes = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix("kB"))?;
+    Some(kibibytes.trim().parse::<u64>().ok()? << 10)
 }
 
 /// Measures stages, of any thread.
@@ -99,7 +108,8 @@ impl Stopwatch {
         let result = work();
         let milliseconds = (self.began.elapsed() - start).as_secs_f64() * 1e3;
         let processor = processor.and_then(|before| Some(process_ms()? - before));
-        let booked = Stage { stage, start: start.as_secs_f64() * 1e3, milliseconds, processor };
+        let start = start.as_secs_f64() * 1e3;
+        let booked = Stage { stage, start, milliseconds, processor, peak_bytes: peak_bytes() };
         self.stages.lock().unwrap_or_else(PoisonError::into_inner).push(booked);
         result
     }

@@ -22,12 +22,12 @@ pub(crate) struct Materials {
 }
 
 /// Uploads what the draws read. Returns the groups, the bytes of all textures, and warnings.
-pub(crate) fn upload<'a>(
+pub(crate) fn upload(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    scene: &'a Scene,
+    scene: &Scene,
     drawables: &Drawables,
-    levels: TextureLevels<'a>,
+    levels: TextureLevels,
     disney_table: &Table,
 ) -> (Materials, u64, Vec<String>) {
     let mut cache = TextureCache::new(levels);
@@ -46,11 +46,11 @@ pub(crate) fn upload<'a>(
     (materials, cache.bytes, cache.warnings)
 }
 
-fn bind<'a>(
+fn bind(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    scene: &'a Scene,
-    (cache, disney_table): (&mut TextureCache<'a>, Option<&wgpu::TextureView>),
+    scene: &Scene,
+    (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
     (index, features): (usize, MaterialFeatures),
 ) -> wgpu::BindGroup {

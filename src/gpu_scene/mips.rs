@@ -8,7 +8,7 @@ use crate::math::color::{SrgbCodes, linear_from_srgb};
 use crate::scene::{Image, Pixels};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
-use std::borrow::Cow;
+use std::sync::Arc;
 
 /// What the channels of a texture mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,19 +30,36 @@ impl Role {
 }
 
 /// One level: linear values, as 8-bit codes (sRGB for colours) or half floats.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Level<'a> {
+#[derive(Debug, Clone)]
+pub struct Level {
     pub width: u32,
     pub height: u32,
-    /// Borrowed where they are as the image has them.
-    pub bytes: Cow<'a, [u8]>,
+    pub bytes: Bytes,
+}
+
+/// The image's own bytes where samplers read them as they are.
+#[derive(Debug, Clone)]
+pub enum Bytes {
+    OfImage(Arc<[u8]>),
+    Own(Vec<u8>),
+}
+
+impl std::ops::Deref for Bytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::OfImage(bytes) => bytes,
+            Self::Own(bytes) => bytes,
+        }
+    }
 }
 
 /// Level 0 and, with `mipmapped`, all smaller ones, from the first that is not larger than `max_side` on.
 ///
 /// 8-bit images give RGBA8 levels, encoded as they came; 16-bit ones linear RGBA16F. Normals are signed: in bytes, code 0
 /// of the image is -128; else [-1, 1] in the same steps, from -257/254 on.
-pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<Level<'_>> {
+pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<Level> {
     let fits = |width: u32, height: u32| width.max(height) <= max_side;
     let (mut width, mut height) = (image.width, image.height);
     let mut levels = Vec::new();
@@ -55,20 +72,20 @@ pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<L
         linear = if linear.is_empty() { halved(image, role, to) } else { halve(|i| linear[i], from, to) };
         (width, height) = to;
         if fits(width, height) {
-            levels.push(Level { width, height, bytes: encode(&linear, image, role).into() });
+            levels.push(Level { width, height, bytes: Bytes::Own(encode(&linear, image, role)) });
         }
     }
     levels
 }
 
 /// The first level: the image itself where samplers read it as it is.
-fn largest(image: &Image, role: Role) -> Cow<'_, [u8]> {
+fn largest(image: &Image, role: Role) -> Bytes {
     match &image.pixels {
-        Pixels::Rgba8(bytes) if role == Role::Normal => bytes.iter().map(signed).collect(),
-        Pixels::Rgba8(bytes) => Cow::Borrowed(bytes),
+        Pixels::Rgba8(bytes) if role == Role::Normal => Bytes::Own(bytes.iter().map(signed).collect()),
+        Pixels::Rgba8(bytes) => Bytes::OfImage(Arc::clone(bytes)),
         Pixels::Rgba16(words) => {
             let linear: Vec<Vec4> = words.par_chunks_exact(4).map(|texel| linear_from_words(texel, role)).collect();
-            encode(&linear, image, role).into()
+            Bytes::Own(encode(&linear, image, role))
         }
     }
 }

@@ -73,11 +73,11 @@ pub struct SharedTextures {
 impl GpuScene {
     /// Uploads `scene` with the `levels` of its textures. `maps` are baked from its environment and needed when it has
     /// one; `disney_table` goes to the GPU when something reads it.
-    pub fn new<'a>(
+    pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        scene: &'a Scene,
-        levels: TextureLevels<'a>,
+        scene: &Scene,
+        levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
         disney_table: &Table,
     ) -> Result<Self, UploadError> {

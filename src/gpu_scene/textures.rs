@@ -11,14 +11,15 @@ use std::collections::{BTreeSet, HashMap};
 /// A texture: the image, what its channels mean, and whether it has smaller levels.
 pub(super) type TextureKey = (usize, Role, bool);
 
-/// The levels of all textures that a scene draws with, made on all cores before there is a device.
+/// The levels of all textures that a scene draws with, made on all cores. They share the texels of the scene's images.
 #[derive(Debug)]
-pub struct TextureLevels<'a> {
-    levels: HashMap<TextureKey, Vec<mips::Level<'a>>>,
+pub struct TextureLevels {
+    levels: HashMap<TextureKey, Vec<mips::Level>>,
 }
 
-impl<'a> TextureLevels<'a> {
-    pub fn of(scene: &'a Scene) -> Self {
+impl TextureLevels {
+    /// For a device that allows textures of `max_side` texels.
+    pub fn of(scene: &Scene, max_side: u32) -> Self {
         let drawables = Drawables::new(scene, SceneFeatures::of(scene));
         let keys: BTreeSet<TextureKey> = drawables
             .draws
@@ -26,15 +27,8 @@ impl<'a> TextureLevels<'a> {
             .flat_map(|drawable| textures_of(scene, &scene.materials[drawable.material], &drawable.material_features))
             .collect();
         let keys: Vec<TextureKey> = keys.into_iter().collect();
-        let levels = |&key: &TextureKey| (key, mips::chain(&scene.images[key.0], key.1, key.2, u32::MAX));
+        let levels = |&key: &TextureKey| (key, mips::chain(&scene.images[key.0], key.1, key.2, max_side));
         Self { levels: keys.par_iter().map(levels).collect() }
-    }
-
-    /// Hands over the levels of a texture whose sides are at most `max_side`.
-    fn take(&mut self, image: &'a Image, key: TextureKey, max_side: u32) -> Vec<mips::Level<'a>> {
-        let mut levels = self.levels.remove(&key).unwrap_or_default();
-        levels.retain(|level| level.width.max(level.height) <= max_side);
-        if levels.is_empty() { mips::chain(image, key.1, key.2, max_side) } else { levels }
     }
 }
 
@@ -59,16 +53,16 @@ fn role(slot: TextureSlot, material: &Material) -> Role {
 
 /// Textures and samplers by what tells them apart.
 #[derive(Debug)]
-pub(super) struct TextureCache<'a> {
-    levels: TextureLevels<'a>,
+pub(super) struct TextureCache {
+    levels: TextureLevels,
     views: HashMap<TextureKey, wgpu::TextureView>,
     samplers: HashMap<Sampler, wgpu::Sampler>,
     pub(super) bytes: u64,
     pub(super) warnings: Vec<String>,
 }
 
-impl<'a> TextureCache<'a> {
-    pub(super) fn new(levels: TextureLevels<'a>) -> Self {
+impl TextureCache {
+    pub(super) fn new(levels: TextureLevels) -> Self {
         Self { levels, views: HashMap::new(), samplers: HashMap::new(), bytes: 0, warnings: Vec::new() }
     }
 
@@ -77,13 +71,13 @@ impl<'a> TextureCache<'a> {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        scene: &'a Scene,
+        scene: &Scene,
         key: TextureKey,
     ) -> wgpu::TextureView {
         if let Some(view) = self.views.get(&key) {
             return view.clone();
         }
-        let (index, role, _) = key;
+        let (index, role, mipmapped) = key;
         let image = &scene.images[index];
         let max_side = device.limits().max_texture_dimension_2d;
         if image.width.max(image.height) > max_side {
@@ -91,8 +85,10 @@ impl<'a> TextureCache<'a> {
             let message = format!("image {index} is {width} x {height}; this device draws it at {max_side} at most");
             self.warnings.push(message);
         }
-        let texture = upload(device, queue, image, role, &self.levels.take(image, key, max_side));
-        // What is on its way is in memory once more until the device has it.
+        let levels = self.levels.levels.remove(&key);
+        let levels = levels.unwrap_or_else(|| mips::chain(image, role, mipmapped, max_side));
+        let texture = upload(device, queue, image, role, &levels);
+        // What is on its way is in memory once more, until the device has it and a later submission finds that.
         queue.submit([]);
         self.bytes += (0..texture.mip_level_count())
             .map(|level| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1)))
@@ -137,7 +133,7 @@ fn upload(
     queue: &wgpu::Queue,
     image: &Image,
     role: Role,
-    levels: &[mips::Level<'_>],
+    levels: &[mips::Level],
 ) -> wgpu::Texture {
     let format = match image.pixels {
         Pixels::Rgba16(_) => formats::DEEP_TEXTURE,
@@ -146,7 +142,7 @@ fn upload(
         Pixels::Rgba8(_) => formats::DATA_TEXTURE,
     };
     let extent =
-        |level: &mips::Level<'_>| wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 };
+        |level: &mips::Level| wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: image.name.as_deref(),
         size: extent(&levels[0]),
