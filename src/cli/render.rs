@@ -198,11 +198,13 @@ fn draw(
             .map_err(CaptureError::from)?;
         Ok((renderer, uploaded))
     })?;
+    // The device has the maps.
+    let cache = baked.map(|baked| baked.cache);
     let plan = watch.time("pipelines", || renderer.prepare(device, &uploaded, view, target.forward_target()));
     let plan = plan.map_err(CaptureError::from)?;
     if args.verbose {
         eprintln!("specula: {}\n{plan}", gpu.description());
-        if let Some(CacheUse::Unavailable(reason)) = baked.as_ref().map(|baked| &baked.cache) {
+        if let Some(CacheUse::Unavailable(reason)) = &cache {
             eprintln!("specula: warning: the environment is not kept for the next time: {reason}");
         }
     }
@@ -242,7 +244,7 @@ fn draw(
             environment_bytes: uploaded.bytes.environment,
             punctual_lights: scene.lights_in_world().len() as u32,
             environment: uploaded.features.environment,
-            environment_cache: baked.map(|baked| baked.cache.name()),
+            environment_cache: cache.map(|cache| cache.name()),
         }),
         warnings: uploaded.warnings,
         samples: args.driver.capture_options().samples,
