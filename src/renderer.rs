@@ -1,7 +1,7 @@
 //! The facade: scenes in, passes recorded.
 //!
-//! [`Renderer`] holds what lives as long as the device. It never submits, polls or prints: it records into the
-//! caller's encoder.
+//! [`Renderer`] holds what lives as long as the device. It never polls or prints, and frames it records into the
+//! caller's encoder; only uploads are submitted.
 
 mod frame_state;
 mod target;
@@ -9,7 +9,7 @@ mod target;
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, clip_from_origin, plan};
 use crate::gpu::formats::{self, Precision};
-use crate::gpu_scene::{GpuScene, SharedTextures, Table, UploadError};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
 use crate::math::color::linear_from_srgb;
 use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
@@ -135,7 +135,21 @@ impl Renderer {
         scene: &Scene,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        let mut uploaded = GpuScene::new(device, queue, scene, maps, &table(&disney::TABLE))?;
+        let levels = TextureLevels::of(scene, device.limits().max_texture_dimension_2d);
+        self.upload_with(device, queue, scene, levels, maps)
+    }
+
+    /// [`Self::upload`] with levels of its textures that were made beside other work. Of the scene's images only the
+    /// sizes are read.
+    pub fn upload_with(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        levels: TextureLevels,
+        maps: Option<&EnvironmentMaps>,
+    ) -> Result<GpuScene, RenderError> {
+        let mut uploaded = GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?;
         if self.path != PathChoice::Forward && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             uploaded.pull(device, queue, scene);
         }

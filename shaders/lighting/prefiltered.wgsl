@@ -5,13 +5,15 @@
 @group(0) @binding(5) var<uniform> environment: EnvironmentUniform;
 @group(0) @binding(6) var environment_atlas: texture_2d<f32>;
 
-// Levels of the specular maps: 0 is the mirror image, 1 has this perceptual roughness, from there alpha doubles.
+// Levels of the specular maps: 0 is the mirror image, 1 has this perceptual roughness, from there alpha doubles. Below 1
+// a level is the share of level 1 in the mixture with the mirror image that is nearest to the lobe.
 const FINEST_PERCEPTUAL_ROUGHNESS: f32 = 0.08838834764831845;
 const LAST_LEVEL: f32 = 8.0;
 
 fn level_of(perceptual_roughness: f32) -> f32 {
-    let below = perceptual_roughness / FINEST_PERCEPTUAL_ROUGHNESS;
-    return select(LAST_LEVEL + 2.0 * log2(perceptual_roughness), below, below < 1.0);
+    let x = perceptual_roughness / FINEST_PERCEPTUAL_ROUGHNESS;
+    let below = x * x * x * (6.0 + x * (3.0 * x - 8.0));
+    return select(LAST_LEVEL + 2.0 * log2(perceptual_roughness), below, x < 1.0);
 }
 
 // What one level holds, at octahedral coordinates.

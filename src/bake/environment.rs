@@ -13,8 +13,8 @@ use glam::DVec3;
 
 const LEVELS: usize = EnvironmentMaps::LEVELS;
 
-/// Interior sides of the tiles of a large panorama, texels. Level 0 is as sharp as the panorama. The others follow the
-/// lobe. The rough ones are finer than that asks for: a large flat surface magnifies them until the creases of bilinear
+/// Interior sides of the tiles of a large panorama, texels. Level 0 is as sharp as a panorama of 1024 x 512. The others
+/// follow the lobe. The rough ones are finer than that asks for: a large flat surface magnifies them until the creases of bilinear
 /// lookup show, and they fit into room that the atlas has anyway.
 const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 512, 256, 256, 128, 128, 128, 64];
 
@@ -23,7 +23,7 @@ const SMALLEST_SIDE: u32 = 32;
 
 /// Of what [`bake`] computes: raise it with every change of its results beyond rounding, so that nobody reads what an
 /// older version has stored. A test holds it against them.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Limits of [`bake`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,12 +75,14 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
 }
 
 /// A mirror tile of half the panorama's width has about its resolution: the octahedron spends its square on the whole
-/// sphere, the panorama half its rows on the poles. Lobes over the texels of a small panorama need finer tiles than that.
+/// sphere, the panorama half its rows on the poles. But the tile's bilinear lookup blurs once more what that of the
+/// panorama blurs; twice as many texels a side make little of it. The other tiles follow the lobe, which is seen over
+/// the texels of a small panorama too.
 fn tile_sides(panorama_width: u32, options: &BakeOptions) -> [u32; LEVELS] {
     let limit = options.max_side.clamp(SMALLEST_SIDE, LARGEST_SIDES[0]);
     let limit = 1 << limit.ilog2();
-    let mirror = (panorama_width / 2).clamp(1, limit).next_power_of_two().clamp(SMALLEST_SIDE, limit);
-    let mut sides = LARGEST_SIDES.map(|side| side.min(2 * mirror));
+    let mirror = panorama_width.clamp(1, limit).next_power_of_two().clamp(SMALLEST_SIDE, limit);
+    let mut sides = LARGEST_SIDES.map(|side| side.min(mirror.max(2 * SMALLEST_SIDE)));
     sides[0] = mirror;
     sides
 }

@@ -18,21 +18,29 @@ pub(super) struct Atlas {
 }
 
 impl Atlas {
-    /// An empty atlas for tiles of the given interior sides, set on shelves two of the largest wide.
+    /// An empty atlas for tiles of the given interior sides, none larger than the one before: as wide as the first two,
+    /// each tile as high up as it fits, and then as far left.
     pub(super) fn new(sizes: &[u32]) -> Self {
-        let width = 2 * sizes.iter().map(|size| size + 2 * BORDER).max().unwrap_or(0);
-        let (mut x, mut y, mut shelf) = (0, 0, 0);
-        let mut tiles = Vec::with_capacity(sizes.len());
-        for &size in sizes {
-            let side = size + 2 * BORDER;
-            if x + side > width {
-                (x, y, shelf) = (0, y + shelf, 0);
-            }
-            tiles.push(SpecularTile { origin: [x + BORDER, y + BORDER], size });
-            x += side;
-            shelf = shelf.max(side);
+        let sides: Vec<u32> = sizes.iter().map(|size| size + 2 * BORDER).collect();
+        let width = sides.iter().take(2).sum();
+        let mut corners: Vec<[u32; 2]> = Vec::with_capacity(sides.len());
+        for &side in &sides {
+            let placed = || corners.iter().zip(&sides);
+            let is_free = |[x, y]: [u32; 2]| {
+                let is_apart = |(&[left, top], &other): (&[u32; 2], &u32)| {
+                    x + side <= left || left + other <= x || y + side <= top || top + other <= y
+                };
+                x + side <= width && placed().all(is_apart)
+            };
+            let beside = placed().flat_map(|(&[x, y], &side)| [[x + side, y], [x, y + side]]);
+            let places = beside.chain([[0, 0]]).filter(|place| is_free(*place));
+            // Below the tile that reaches farthest down, at the left edge, there is always room.
+            let corner = places.min_by_key(|[x, y]| (*y, *x)).unwrap_or_default();
+            corners.push(corner);
         }
-        let height = y + shelf;
+        let height = corners.iter().zip(&sides).map(|([_, y], side)| y + side).max().unwrap_or(0);
+        let tile = |([x, y], &size): ([u32; 2], &u32)| SpecularTile { origin: [x + BORDER, y + BORDER], size };
+        let tiles = corners.into_iter().zip(sizes).map(tile).collect();
         Self { tiles, width, height, texels: vec![Vec3::ZERO; (width * height) as usize] }
     }
 
@@ -91,6 +99,15 @@ mod tests {
             let of_level = atlas.texels.iter().filter(|texel| texel.x == level as f32 + 1.0).count();
             assert_eq!(of_level, (tile.size as usize + 2).pow(2), "level {level}");
         }
+    }
+
+    #[test]
+    fn tiles_of_a_large_panorama_leave_little_room() {
+        let sizes = [1024, 512, 512, 256, 256, 128, 128, 128, 64];
+        let atlas = Atlas::new(&sizes);
+        let used: u32 = sizes.iter().map(|size| (size + 2) * (size + 2)).sum();
+        assert_eq!((atlas.width, atlas.height), (1540, 1284));
+        assert!(atlas.width * atlas.height * 8 < used * 9, "{used}");
     }
 
     #[test]

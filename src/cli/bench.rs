@@ -23,7 +23,7 @@ use crate::metrics::truth::RelativeError;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::scene::{Quality, Scene, View};
-pub(super) use clock::{Basis, median_ms};
+pub(super) use clock::{Basis, median_ms, process_ms};
 use clock::{FrameTimes, median_times};
 use report::{DisplayRow, Row, TermRow, TruthReport};
 pub(super) use settings::Setting;
@@ -81,7 +81,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("bench measures the GPU against the reference; leave out --renderer".into()));
     }
     let progress = StderrProgress::new(args.quiet);
-    let (scene, warnings) = args.subject.load(&progress, &mut Stopwatch::default())?;
+    let (scene, warnings) = args.subject.load(&progress, &Stopwatch::default())?;
     let view = args.view.view(&scene, args.subject.has_panorama())?;
     // Float targets are among the settings.
     let gpu = Gpu::open(&args.driver.request(), GpuOptions { precision: Precision::Float });
@@ -116,10 +116,11 @@ fn measure(
     progress: &dyn Progress,
 ) -> Result<report::Report, CliError> {
     let EffortArgs { frames, clock, truth_samples, truth_error } = args.effort;
+    let cache = args.subject.cache();
     let basis = clock.unwrap_or_else(|| Basis::suiting(gpu));
     let capture = args.driver.capture_options();
     let base = Setting::new(view.quality, capture, args.driver.paths_on(gpu));
-    let mut stage = Stage::new(gpu, scene);
+    let mut stage = Stage::new(gpu, scene, cache);
     let (base_shot, others, warnings) = shots(&mut stage, base, (scene, view), progress)?;
     let shots: Vec<Shot> = std::iter::once(base_shot).chain(others).collect();
     let times = stage.measure(&shots, frames, progress)?;
@@ -129,7 +130,8 @@ fn measure(
     let options = TruthOptions { samples: truth_samples, relative_error: truth_error, progress };
     let picture = Truth::of_picture(scene, view, &options);
     let bare = with_bare_textures(scene);
-    let mut light = Light { truth: Truth::of_shading(&bare, view, &options), stage: Stage::new(gpu, &bare), view };
+    let mut light =
+        Light { truth: Truth::of_shading(&bare, view, &options), stage: Stage::new(gpu, &bare, cache), view };
     Ok(report::Report::new(report::Parts {
         model: args.subject.model.display().to_string(),
         environment: args.subject.environment_name().to_owned(),

@@ -105,14 +105,23 @@ pub(super) fn bake_maps(
     progress: &dyn Progress,
 ) -> Option<BakedEnvironment> {
     let options = BakeOptions { suns: quality.parts_suns(), ..Default::default() };
-    let image = &scene.lit_environment()?.image;
-    let without = |cache| BakedEnvironment { maps: environment::bake(image, &options, progress), cache };
-    Some(match EnvironmentCache::of_user() {
+    Some(bake_with(&scene.lit_environment()?.image, &options, cache, progress))
+}
+
+/// A panorama prefiltered within `options`, from the cache where that is wanted and possible.
+pub(super) fn bake_with(
+    image: &EnvironmentImage,
+    options: &BakeOptions,
+    cache: &CacheArgs,
+    progress: &dyn Progress,
+) -> BakedEnvironment {
+    let without = |cache| BakedEnvironment { maps: environment::bake(image, options, progress), cache };
+    match EnvironmentCache::of_user() {
         _ if cache.no_cache => without(CacheUse::Off),
         None => without(CacheUse::Unavailable("neither SPECULA_CACHE_DIR nor a home folder is set".into())),
         Some(cache) => {
-            let (maps, outcome) = cache.bake(image, &options, progress);
+            let (maps, outcome) = cache.bake(image, options, progress);
             BakedEnvironment { maps, cache: outcome.into() }
         }
-    })
+    }
 }

@@ -45,8 +45,8 @@ pub(super) struct InspectArgs {
 
 pub(super) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let progress = StderrProgress::new(args.quiet);
-    let mut watch = Stopwatch::default();
-    let loaded = args.subject.load_with_file(&progress, &mut watch)?;
+    let watch = Stopwatch::default();
+    let loaded = args.subject.load_with_file(&progress, &watch)?;
     let text = match &args.pixel {
         None => model::describe(args, &loaded)?,
         Some(pixel) => explain(args, pixel, loaded, &progress)?,

@@ -15,6 +15,7 @@ mod inspect;
 mod light;
 mod output;
 mod overrides;
+mod parallel;
 mod progress;
 mod render;
 mod stability;

@@ -5,6 +5,7 @@ use super::driver::DriverArgs;
 use super::environment::{CacheUse, bake_maps};
 use super::error::CliError;
 use super::output::{self, Format};
+use super::parallel::beside;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, CulledStats, GpuStats, RenderStats, Stopwatch};
 use super::subject::SubjectArgs;
@@ -14,11 +15,12 @@ use super::view::ViewArgs;
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
 use crate::gpu::Gpu;
 use crate::gpu::formats::Precision;
+use crate::gpu_scene::TextureLevels;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
-use crate::scene::{Channel, RadianceImage, Scene, View};
+use crate::scene::{Channel, Image, RadianceImage, Scene, View};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]
@@ -89,21 +91,27 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("--max-error and --max-ms choose a tier of the GPU; leave out --renderer".into()));
     }
     let progress = StderrProgress::new(args.quiet);
-    let mut watch = Stopwatch::default();
-    let (scene, mut warnings) = args.subject.load(&progress, &mut watch)?;
+    let watch = Stopwatch::default();
+    let mut warnings_of_device = Vec::new();
+    let (loaded, gpu) = beside(
+        || args.subject.load(&progress, &watch),
+        || watch.time("device", || args.driver.open(&mut warnings_of_device)),
+    );
+    let (mut scene, mut warnings) = loaded?;
     let mut view = args.view.view(&scene, args.subject.has_panorama())?;
-    let gpu = watch.time("device", || args.driver.open(&mut warnings))?;
+    let gpu = gpu?;
+    warnings.extend(warnings_of_device);
     let tier = watch
         .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
     view.channel = args.debug_view;
     let rendered = match gpu {
-        Some(gpu) => draw(args, &gpu, &scene, &view, format, (&progress, &mut watch))?,
+        Some(gpu) => draw(args, &gpu, &mut scene, &view, format, (&progress, &watch))?,
         None if args.debug_view.is_some() => {
             return Err(CliError::Usage(
                 "--debug-view shows what shaders compute; it needs a GPU or a software driver".into(),
             ));
         }
-        None => trace(args, &scene, &view, format, (&progress, &mut watch)),
+        None => trace(args, &scene, &view, format, (&progress, &watch)),
     };
     progress.finish();
     warnings.extend(rendered.warnings);
@@ -143,7 +151,8 @@ fn choose_tier(
 ) -> Result<Option<TierStats>, CliError> {
     let Some(gpu) = gpu.filter(|_| args.tier.is_asked()) else { return Ok(None) };
     let options = (args.driver.capture_options(), args.driver.paths_on(gpu));
-    let (quality, stats) = args.tier.choose(gpu, (scene, view), options, (progress, warnings))?;
+    let (quality, stats) =
+        args.tier.choose((gpu, args.subject.cache()), (scene, view), options, (progress, warnings))?;
     view.quality = quality;
     progress.finish();
     if !args.quiet {
@@ -168,26 +177,34 @@ fn report(args: &RenderArgs, stats: &RenderStats) -> Result<(), CliError> {
 fn draw(
     args: &RenderArgs,
     gpu: &Gpu,
-    scene: &Scene,
+    scene: &mut Scene,
     view: &View,
     format: Format,
-    (progress, watch): (&dyn Progress, &mut Stopwatch),
+    (progress, watch): (&dyn Progress, &Stopwatch),
 ) -> Result<Rendered, CliError> {
     let target = CaptureTarget::new(gpu, view, args.driver.capture_options())?;
-    let baked = watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress));
+    let max_side = gpu.device.limits().max_texture_dimension_2d;
+    let (baked, levels) = beside(
+        || watch.time("environment bake", || bake_maps(scene, view.quality, args.subject.cache(), progress)),
+        || watch.time("mips", || TextureLevels::of(scene, max_side)),
+    );
+    // Each texture's are in memory only until it is uploaded.
+    scene.images.iter_mut().for_each(Image::forget_texels);
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
         let renderer = Renderer::new(device, queue).with_paths(args.driver.paths_on(gpu));
         let uploaded = renderer
-            .upload(device, queue, scene, baked.as_ref().map(|baked| &baked.maps))
+            .upload_with(device, queue, scene, levels, baked.as_ref().map(|baked| &baked.maps))
             .map_err(CaptureError::from)?;
         Ok((renderer, uploaded))
     })?;
+    // The device has the maps.
+    let cache = baked.map(|baked| baked.cache);
     let plan = watch.time("pipelines", || renderer.prepare(device, &uploaded, view, target.forward_target()));
     let plan = plan.map_err(CaptureError::from)?;
     if args.verbose {
         eprintln!("specula: {}\n{plan}", gpu.description());
-        if let Some(CacheUse::Unavailable(reason)) = baked.as_ref().map(|baked| &baked.cache) {
+        if let Some(CacheUse::Unavailable(reason)) = &cache {
             eprintln!("specula: warning: the environment is not kept for the next time: {reason}");
         }
     }
@@ -230,7 +247,7 @@ fn draw(
             environment_bytes: uploaded.bytes.environment,
             punctual_lights: scene.lights_in_world().len() as u32,
             environment: uploaded.features.environment,
-            environment_cache: baked.map(|baked| baked.cache.name()),
+            environment_cache: cache.map(|cache| cache.name()),
         }),
         warnings: uploaded.warnings,
         samples: args.driver.capture_options().samples,
@@ -244,7 +261,7 @@ fn trace(
     scene: &Scene,
     view: &View,
     format: Format,
-    (progress, watch): (&dyn Progress, &mut Stopwatch),
+    (progress, watch): (&dyn Progress, &Stopwatch),
 ) -> Rendered {
     let truth = watch.time("reference render", || estimate(scene, view, &args.truth.options(progress)));
     let picture = match format {

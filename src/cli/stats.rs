@@ -1,9 +1,11 @@
 //! What a render did, for `--stats` and `--json`.
 
+use super::bench::process_ms;
 use super::tier::TierStats;
 use crate::frame::Culled;
 use crate::gpu::Gpu;
 use serde::Serialize;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Everything that is known about one rendered picture.
@@ -90,29 +92,57 @@ impl CulledStats {
     }
 }
 
-/// The time that one stage took.
+/// The time that one stage took. Stages may run beside each other.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Stage {
     pub(super) stage: &'static str,
+    /// On the wall, since the program began.
+    pub(super) start: f64,
     pub(super) milliseconds: f64,
+    /// Of the processors, while the stage ran: of all threads of the process, so of stages beside it too. None where the
+    /// system does not tell.
+    pub(super) processor: Option<f64>,
+    /// Most memory that the process has held until the stage was done. None where the system does not tell.
+    pub(super) peak_bytes: Option<u64>,
 }
 
-/// Measures stages one after another.
-#[derive(Debug, Default)]
+/// Most memory that this process has held so far, on Linux (VmHWM of proc(5)).
+fn peak_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let kibibytes = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix("kB"))?;
+    Some(kibibytes.trim().parse::<u64>().ok()? << 10)
+}
+
+/// Measures stages, of any thread.
+#[derive(Debug)]
 pub(super) struct Stopwatch {
-    stages: Vec<Stage>,
+    began: Instant,
+    stages: Mutex<Vec<Stage>>,
+}
+
+impl Default for Stopwatch {
+    fn default() -> Self {
+        Self { began: Instant::now(), stages: Mutex::default() }
+    }
 }
 
 impl Stopwatch {
     /// Runs `work` and books its time under `stage`.
-    pub(super) fn time<T>(&mut self, stage: &'static str, work: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
+    pub(super) fn time<T>(&self, stage: &'static str, work: impl FnOnce() -> T) -> T {
+        let (start, processor) = (self.began.elapsed(), process_ms());
         let result = work();
-        self.stages.push(Stage { stage, milliseconds: start.elapsed().as_secs_f64() * 1e3 });
+        let milliseconds = (self.began.elapsed() - start).as_secs_f64() * 1e3;
+        let processor = processor.and_then(|before| Some(process_ms()? - before));
+        let start = start.as_secs_f64() * 1e3;
+        let booked = Stage { stage, start, milliseconds, processor, peak_bytes: peak_bytes() };
+        self.stages.lock().unwrap_or_else(PoisonError::into_inner).push(booked);
         result
     }
 
+    /// All of them, by their start.
     pub(super) fn stages(self) -> Vec<Stage> {
-        self.stages
+        let mut stages = self.stages.into_inner().unwrap_or_else(PoisonError::into_inner);
+        stages.sort_by(|a, b| a.start.total_cmp(&b.start));
+        stages
     }
 }

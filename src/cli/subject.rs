@@ -4,6 +4,7 @@ use super::environment::{CacheArgs, EnvironmentArgs};
 use super::error::CliError;
 use super::light::LightArgs;
 use super::overrides;
+use super::parallel::beside;
 use super::stats::Stopwatch;
 use crate::import::{ImportOptions, Imported, SceneChoice, model_from_path, model_from_slice};
 use crate::progress::Progress;
@@ -58,11 +59,7 @@ impl SubjectArgs {
     ///
     /// # Errors
     /// When a flag is malformed, or the model or the panorama cannot be read.
-    pub(super) fn load(
-        &self,
-        progress: &dyn Progress,
-        watch: &mut Stopwatch,
-    ) -> Result<(Scene, Vec<String>), CliError> {
+    pub(super) fn load(&self, progress: &dyn Progress, watch: &Stopwatch) -> Result<(Scene, Vec<String>), CliError> {
         let Loaded { scene, warnings, .. } = self.load_with_file(progress, watch)?;
         Ok((scene, warnings))
     }
@@ -71,13 +68,16 @@ impl SubjectArgs {
     ///
     /// # Errors
     /// As [`Self::load`].
-    pub(super) fn load_with_file(&self, progress: &dyn Progress, watch: &mut Stopwatch) -> Result<Loaded, CliError> {
+    pub(super) fn load_with_file(&self, progress: &dyn Progress, watch: &Stopwatch) -> Result<Loaded, CliError> {
         let lights = self.lights.parse()?;
-        let imported = watch.time("decode", || self.import(progress))?;
-        let Imported { mut scene, warnings, scene_names, scene_index, extensions_used } = imported;
+        let (imported, environment) = beside(
+            || watch.time("decode", || self.import(progress)),
+            || watch.time("environment decode", || self.environment.load()),
+        );
+        let Imported { mut scene, warnings, scene_names, scene_index, extensions_used } = imported?;
         let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         overrides::apply(&mut scene, &self.overrides)?;
-        scene.environment = watch.time("environment decode", || self.environment.load())?;
+        scene.environment = environment?;
         for light in lights {
             warnings.extend(light.note);
             scene.add_light(light.light, light.position_in_world, light.direction_in_world);

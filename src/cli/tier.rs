@@ -1,6 +1,7 @@
 //! `--max-error` and `--max-ms`: the tier that a scene and a view ask for, measured on the spot.
 
 use super::bench::{Basis, Light, Setting, Stage, Truth, TruthOptions, median_ms, with_bare_textures};
+use super::environment::CacheArgs;
 use super::error::CliError;
 use super::truth::parse_error;
 use crate::capture::CaptureOptions;
@@ -69,7 +70,7 @@ impl TierArgs {
     /// When the scene cannot be drawn.
     pub(super) fn choose(
         &self,
-        gpu: &Gpu,
+        (gpu, cache): (&Gpu, &CacheArgs),
         (scene, view): (&Scene, &View),
         (options, paths): (CaptureOptions, PathChoice),
         (progress, warnings): (&dyn Progress, &mut Vec<String>),
@@ -77,7 +78,7 @@ impl TierArgs {
         let tiers: Vec<Quality> =
             if scene.lit_environment().is_some() { Quality::ALL.into() } else { vec![view.quality] };
         let settings: Vec<Setting> = tiers.iter().map(|&quality| Setting::new(quality, options, paths)).collect();
-        let mut candidates = times(gpu, scene, view, &settings, progress)?;
+        let mut candidates = times((gpu, cache), scene, view, &settings, progress)?;
         let mut stats = TierStats {
             taken: "",
             max_error: self.max_error,
@@ -87,7 +88,7 @@ impl TierArgs {
             tiers: Vec::new(),
         };
         if self.max_error.is_some() {
-            errors(gpu, (scene, view), &settings, &mut candidates, (&mut stats, progress))?;
+            errors((gpu, cache), (scene, view), &settings, &mut candidates, (&mut stats, progress))?;
         }
         let (taken, missed) = pick(&candidates, self.max_error, self.max_ms);
         warnings.extend(missed);
@@ -98,13 +99,13 @@ impl TierArgs {
 }
 
 fn times(
-    gpu: &Gpu,
+    (gpu, cache): (&Gpu, &CacheArgs),
     scene: &Scene,
     view: &View,
     settings: &[Setting],
     progress: &dyn Progress,
 ) -> Result<Vec<Candidate>, CliError> {
-    let mut stage = Stage::new(gpu, scene);
+    let mut stage = Stage::new(gpu, scene, cache);
     let shots: Result<Vec<_>, CliError> = settings.iter().map(|&s| stage.shot(s, view, progress)).collect();
     let frames = stage.measure(&shots?, FRAMES, progress)?;
     let candidate = |(setting, frames): (&Setting, &Vec<_>)| Candidate {
@@ -117,7 +118,7 @@ fn times(
 }
 
 fn errors(
-    gpu: &Gpu,
+    (gpu, cache): (&Gpu, &CacheArgs),
     (scene, view): (&Scene, &View),
     settings: &[Setting],
     candidates: &mut [Candidate],
@@ -128,7 +129,7 @@ fn errors(
     let (view, bare) = (View { size_px, ..view.clone() }, with_bare_textures(scene));
     let options = TruthOptions { samples: TRUTH_SAMPLES, relative_error: None, progress };
     let mut light =
-        Light { truth: Truth::of_shading(&bare, &view, &options), stage: Stage::new(gpu, &bare), view: &view };
+        Light { truth: Truth::of_shading(&bare, &view, &options), stage: Stage::new(gpu, &bare, cache), view: &view };
     (stats.truth_samples, stats.truth_size_px) = (Some(light.truth.samples), Some(size_px.to_array()));
     for (candidate, setting) in candidates.iter_mut().zip(settings) {
         let error = light.error(*setting, progress)?;

@@ -20,6 +20,9 @@ pub const ENVIRONMENT: TextureFormat = TextureFormat::Rgba16Float;
 pub const COLOR_TEXTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// 8-bit textures that hold numbers.
 pub const DATA_TEXTURE: TextureFormat = TextureFormat::Rgba8Unorm;
+/// 8-bit normal maps, moved by half the range: llvmpipe filters unsigned bytes in steps of 1/255, too coarse for a mirror,
+/// and signed ones in float32. `gpu_scene::mips` makes them, `surface/normal_map.wgsl` undoes it.
+pub const NORMAL_TEXTURE: TextureFormat = TextureFormat::Rgba8Snorm;
 /// Textures that came with 16 bits a channel, made linear.
 pub const DEEP_TEXTURE: TextureFormat = TextureFormat::Rgba16Float;
 

@@ -1,9 +1,8 @@
 //! Material uniforms and bind groups: one a material and set of features, with only what those features read.
 
 use super::entry;
-use super::mips::Role;
 use super::tables::Table;
-use super::textures::TextureCache;
+use super::textures::{TextureCache, TextureLevels, textures_of};
 use crate::frame::Drawables;
 use crate::gpu::bindings::material_layout;
 use crate::scene::{AlphaMode, Disney, Material, MetalFresnel, Scene, TextureSlot};
@@ -29,9 +28,10 @@ pub(crate) fn upload(
     queue: &wgpu::Queue,
     scene: &Scene,
     drawables: &Drawables,
+    levels: TextureLevels,
     disney_table: &Table,
 ) -> (Materials, u64, Vec<String>) {
-    let mut cache = TextureCache::default();
+    let mut cache = TextureCache::new(levels);
     let mut materials = Materials::default();
     let mut bound: HashMap<(usize, MaterialFeatures), wgpu::BindGroup> = HashMap::new();
     let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
@@ -63,14 +63,8 @@ fn bind(
         .into_iter()
         .map(|sampler| cache.sampler(device, sampler))
         .collect();
-    let views: Vec<wgpu::TextureView> = features
-        .textures()
-        .filter_map(|(slot, _)| Some((slot, scene.textures[material.texture(slot)?.texture])))
-        .map(|(slot, texture)| {
-            let mipmapped = texture.sampler.mip_linear.is_some();
-            cache.view(device, queue, scene, (texture.image, role(slot, material), mipmapped))
-        })
-        .collect();
+    let textures = textures_of(scene, material, &features).into_iter();
+    let views: Vec<wgpu::TextureView> = textures.map(|key| cache.view(device, queue, scene, key)).collect();
     let mut entries = vec![entry(MATERIAL_UNIFORM_BINDING, uniform.as_entire_binding())];
     for (index, sampler) in samplers.iter().enumerate() {
         let binding = MATERIAL_SAMPLER_BINDING + index as u32;
@@ -107,15 +101,6 @@ fn disney_uniform(disney: &Disney) -> types::DisneyUniform {
         sheen_tint: disney.sheen_tint,
         clearcoat: disney.clearcoat,
         clearcoat_gloss: disney.clearcoat_gloss,
-    }
-}
-
-fn role(slot: TextureSlot, material: &Material) -> Role {
-    match slot {
-        TextureSlot::Normal => Role::Normal,
-        TextureSlot::BaseColor if material.alpha_mode != AlphaMode::Opaque => Role::ColorWithCoverage,
-        slot if slot.is_srgb() => Role::Color,
-        _ => Role::Data,
     }
 }
 

@@ -24,6 +24,7 @@ pub(crate) use lights::GpuClusters;
 use lights::GpuLights;
 pub use pulled::PulledGeometry;
 pub use tables::Table;
+pub use textures::TextureLevels;
 
 /// Why a scene cannot be put on this device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -88,12 +89,13 @@ pub struct SharedTextures {
 }
 
 impl GpuScene {
-    /// Uploads `scene`. `maps` are baked from its environment and needed when it has one; `disney_table` goes to the GPU
-    /// when something reads it.
+    /// Uploads `scene` with the `levels` of its textures. `maps` are baked from its environment and needed when it has
+    /// one; `disney_table` goes to the GPU when something reads it.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &Scene,
+        levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
@@ -102,7 +104,8 @@ impl GpuScene {
         let drawables = Drawables::new(scene, features);
         let origin_in_world = drawables.origin_in_world;
         let geometry = upload_primitives(device, scene, &drawables)?;
-        let (materials, texture_bytes, warnings) = materials::upload(device, queue, scene, &drawables, disney_table);
+        let (materials, texture_bytes, warnings) =
+            materials::upload(device, queue, scene, &drawables, levels, disney_table);
         let environment = match (features.environment, &scene.environment, maps) {
             (true, Some(environment), Some(maps)) => Some(GpuEnvironment::new(device, queue, environment, maps)?),
             (true, ..) => return Err(UploadError::MissingMaps),

@@ -39,7 +39,7 @@ pub use limits::Limits;
 pub use picture::{picture_from_path, picture_from_slice};
 
 use crate::progress::{Progress, Silent};
-use crate::scene::{Material, Mesh, Primitive, Scene};
+use crate::scene::{Material, Mesh, Node, Primitive, Scene};
 use accessor::Accessors;
 use buffers::Buffers;
 use document::Document;
@@ -168,7 +168,7 @@ fn import_model(
     let chosen = nodes::choose_scene(root, &nodes, options.scene.as_ref(), notes)?;
     let cameras = cameras::import(root, notes)?;
     let mut materials = materials::import(root, notes)?;
-    let textures = textures::collect(root, &mut materials, &used_materials(root), notes)?;
+    let textures = textures::collect(root, &mut materials, &drawn_materials(root, &nodes, &chosen.roots), notes)?;
     if root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| primitive.material.is_none()) {
         materials.push(Material::default());
     }
@@ -195,12 +195,16 @@ fn import_model(
     Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index, extensions_used })
 }
 
-/// Which materials a primitive has.
-fn used_materials(root: &Root) -> Vec<bool> {
-    let mut used = vec![false; root.materials.len()];
-    let materials = root.meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(|primitive| primitive.material);
-    materials.for_each(|material| used[material.value()] = true);
-    used
+/// Which materials a primitive below `roots` has. No node has two parents.
+fn drawn_materials(root: &Root, nodes: &[Node], roots: &[usize]) -> Vec<bool> {
+    let mut drawn = vec![false; root.materials.len()];
+    let mut left = roots.to_vec();
+    while let Some(node) = left.pop() {
+        left.extend(&nodes[node].children);
+        let primitives = nodes[node].mesh.iter().flat_map(|mesh| &root.meshes[*mesh].primitives);
+        primitives.filter_map(|primitive| primitive.material).for_each(|material| drawn[material.value()] = true);
+    }
+    drawn
 }
 
 /// All meshes of the document. Primitives without a material have the last of `materials`.

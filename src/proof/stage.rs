@@ -86,7 +86,10 @@ fn material() -> String {
     );
     for slot in TextureSlot::ALL {
         let (name, index) = (slot.name(), slot as usize);
-        let _ = writeln!(text, "\nfn {name}_texel(v: VertexOut) -> vec4f {{\n    return texels[{index}];\n}}");
+        // Normals are signed on the device (`gpu_scene::mips`).
+        let read = if slot == TextureSlot::Normal { "(texels[SLOT] * 255.0 - 128.0) / 127.0" } else { "texels[SLOT]" };
+        let read = read.replace("SLOT", &index.to_string());
+        let _ = writeln!(text, "\nfn {name}_texel(v: VertexOut) -> vec4f {{\n    return {read};\n}}");
     }
     text
 }

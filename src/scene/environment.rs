@@ -121,15 +121,18 @@ impl EnvironmentMaps {
     pub const FINEST_PERCEPTUAL_ROUGHNESS: f64 = 0.088_388_347_648_318_45;
 
     /// The perceptual roughness of a level. Alpha doubles from level 1 on, up to 1 at level 8, so that a mixture of two
-    /// neighbours has the same shape wherever it stands. Below level 1 lookups mix with the mirror image.
+    /// neighbours has the same shape wherever it stands. Below level 1 there is the mirror image, of perceptual
+    /// roughness 0.
     pub fn perceptual_roughness_at(level: f64) -> f64 {
-        if level < 1.0 { Self::FINEST_PERCEPTUAL_ROUGHNESS * level } else { (0.5 * level - 4.0).exp2() }
+        if level < 1.0 { 0.0 } else { (0.5 * level - 4.0).exp2() }
     }
 
-    /// The level, in [0, 8], of a perceptual roughness in [0, 1].
+    /// The level, in [0, 8], of a perceptual roughness in [0, 1]. Below 1 it is the share of level 1 in a mixture with
+    /// the mirror image that is nearest to the lobe: in least squares, under light whose power falls with the degree as
+    /// (1 + l)^-2, as far as a panorama of 1024 x 512 holds it. The polynomial is within 0.025 of that share.
     pub fn level_of(perceptual_roughness: f64) -> f64 {
-        let below = perceptual_roughness / Self::FINEST_PERCEPTUAL_ROUGHNESS;
-        if below < 1.0 { below } else { 8.0 + 2.0 * perceptual_roughness.log2() }
+        let x = perceptual_roughness / Self::FINEST_PERCEPTUAL_ROUGHNESS;
+        if x < 1.0 { x * x * x * (6.0 + x * (3.0 * x - 8.0)) } else { 8.0 + 2.0 * perceptual_roughness.log2() }
     }
 
     /// Irradiance / pi, cd/m2, on a surface with the unit normal `n`; slightly negative at worst, opposite to a sun.

@@ -18,6 +18,16 @@ pub struct Image {
     pub pixels: Pixels,
 }
 
+impl Image {
+    /// Lets go of the texels, for whoever has made a texture of them. The size and the kind of texels stay.
+    pub fn forget_texels(&mut self) {
+        self.pixels = match self.pixels {
+            Pixels::Rgba8(_) => Pixels::Rgba8(Arc::new([])),
+            Pixels::Rgba16(_) => Pixels::Rgba16(Arc::new([])),
+        };
+    }
+}
+
 /// What lies outside [0, 1] of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Wrap {

@@ -188,7 +188,7 @@ const IN_FRAMES: &[Mutant] = &[
     fault("surface/surface.wgsl", "material.occlusion_strength * ", ""),
     fault("surface/surface.wgsl", " * emissive_texel(v).xyz", ""),
     fault("surface/surface.wgsl", " * vertex_color(v)", ""),
-    fault("surface/normal_map.wgsl", "xyz * 2.0 - 1.0", "xyz * 2.0"),
+    fault("surface/normal_map.wgsl", "xyz * (254.0 / 255.0) + 1.0 / 255.0", "xyz * 0.5 + 0.5"),
     fault("surface/normal_map.wgsl", " * v.tangent.w", ""),
     fault("surface/normal_map.wgsl", " * material.normal_scale", ""),
     fault("surface/normal_map.wgsl", "cross(v.normal, v.tangent.xyz)", "cross(v.tangent.xyz, v.normal)"),

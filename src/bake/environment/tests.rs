@@ -203,11 +203,30 @@ fn lookups_do_not_jump_where_the_chart_is_cut() {
 #[test]
 fn tile_sides_follow_the_panorama_within_their_limits() {
     let sides = |width, max_side| tile_sides(width, &BakeOptions { max_side, ..WHOLE });
-    assert_eq!(sides(1024, 1024), [512, 512, 512, 256, 256, 128, 128, 128, 64]);
+    assert_eq!(sides(1024, 1024), [1024, 512, 512, 256, 256, 128, 128, 128, 64]);
     assert_eq!(sides(16384, 1024)[0], 1024);
     assert_eq!(sides(4, 1024), [32, 64, 64, 64, 64, 64, 64, 64, 64]);
     assert_eq!(sides(4096, 300)[0], 256);
     assert_eq!(sides(0, 0)[0], 32);
+}
+
+#[test]
+fn mixtures_with_the_mirror_image_are_the_nearest_to_the_lobe() {
+    // Power by degree of light like that which taps are fitted to, through the bilinear lookup of 512 rows.
+    let power = |degree: usize| {
+        (-(degree as f64 / 420.0).powi(4)).exp() * (2 * degree + 1) as f64 / (degree as f64 + 1.0).powi(2)
+    };
+    let lobe = |r: f64| legendre_coefficients(r * r, 600);
+    let finest = EnvironmentMaps::FINEST_PERCEPTUAL_ROUGHNESS;
+    let level_1 = lobe(finest);
+    for r in [0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0].map(|x| x * finest) {
+        let lost = |lobe: &[f64], degree: usize| 1.0 - lobe[degree] / lobe[0];
+        let lobe = lobe(r);
+        let product = |a: &[f64], b: &[f64]| (1..600).map(|l| power(l) * lost(a, l) * lost(b, l)).sum::<f64>();
+        let nearest = product(&lobe, &level_1) / product(&level_1, &level_1);
+        let share = EnvironmentMaps::level_of(r);
+        assert!((share - nearest).abs() < 0.025, "{r}: {share}, nearest {nearest}");
+    }
 }
 
 #[test]

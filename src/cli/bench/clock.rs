@@ -57,7 +57,7 @@ impl Basis {
 }
 
 /// Processor time of this process, ms.
-fn process_ms() -> Option<f64> {
+pub(in crate::cli) fn process_ms() -> Option<f64> {
     #[cfg(unix)]
     {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);

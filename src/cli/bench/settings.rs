@@ -27,7 +27,7 @@ pub(in crate::cli) struct Setting {
 /// Samples of the rasteriser, and how much larger the picture is drawn, that every tier is combined with.
 const SAMPLINGS: [(u32, u32); 3] = [(1, 1), (4, 1), (1, 2)];
 /// Smaller prefiltered environments, each with everything else as the base has it.
-const PREFILTER_SIDES: [u32; 2] = [256, 128];
+const PREFILTER_SIDES: [u32; 2] = [512, 256];
 
 impl Setting {
     pub(in crate::cli) fn new(quality: Quality, capture: CaptureOptions, path: PathChoice) -> Self {

@@ -2,8 +2,9 @@
 
 use super::clock::{FrameTimes, Timestamps, time_frame};
 use super::settings::Setting;
-use crate::bake::environment::{self, BakeOptions};
+use crate::bake::environment::BakeOptions;
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame, Wanted, record, submit};
+use crate::cli::environment::{CacheArgs, bake_with};
 use crate::cli::error::CliError;
 use crate::gpu::Gpu;
 use crate::gpu_scene::GpuScene;
@@ -22,6 +23,7 @@ type MapsKey = (bool, u32, bool);
 pub(in crate::cli) struct Stage<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,
+    cache: &'a CacheArgs,
     renderer: Renderer,
     timestamps: Option<Timestamps>,
     uploaded: Vec<(MapsKey, GpuScene)>,
@@ -37,9 +39,9 @@ pub(in crate::cli) struct Shot {
 }
 
 impl<'a> Stage<'a> {
-    pub(in crate::cli) fn new(gpu: &'a Gpu, scene: &'a Scene) -> Self {
+    pub(in crate::cli) fn new(gpu: &'a Gpu, scene: &'a Scene, cache: &'a CacheArgs) -> Self {
         let renderer = Renderer::new(&gpu.device, &gpu.queue);
-        Self { gpu, scene, renderer, timestamps: Timestamps::new(gpu), uploaded: Vec::new() }
+        Self { gpu, scene, cache, renderer, timestamps: Timestamps::new(gpu), uploaded: Vec::new() }
     }
 
     /// Makes ready to draw `view` with `setting`, whose tier and samples replace the view's.
@@ -67,7 +69,7 @@ impl<'a> Stage<'a> {
         let maps = self
             .scene
             .lit_environment()
-            .map(|e| environment::bake(&e.image, &BakeOptions { suns, max_side }, progress));
+            .map(|e| bake_with(&e.image, &BakeOptions { suns, max_side }, self.cache, progress).maps);
         Ok(self.renderer.upload(&self.gpu.device, &self.gpu.queue, self.scene, maps.as_ref())?)
     }
 

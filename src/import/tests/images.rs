@@ -194,3 +194,14 @@ fn external_images_are_read_and_named_in_errors() {
     let scene = model_from_path(&model, &ImportOptions::default()).unwrap().scene;
     assert_eq!((scene.images[0].width, scene.images[0].height), (3, 2));
 }
+
+#[test]
+fn what_only_another_scene_shows_is_not_decoded() {
+    let mut asset = with_image(b"no picture");
+    assert!(asset.load().is_err());
+    let node = asset.push("nodes", json!({ "name": "empty" }));
+    asset.json["scenes"] = json!([{ "nodes": [node] }]);
+    asset.json["scene"] = json!(0);
+    let scene = asset.loaded().scene;
+    assert_eq!((scene.images.len(), scene.textures.len(), scene.meshes.len()), (0, 0, 1));
+}
