@@ -67,6 +67,17 @@ pub enum PathChoice {
     Deferred,
 }
 
+impl PathChoice {
+    /// As reports have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Faster => "faster",
+            Self::Deferred => "deferred",
+        }
+    }
+}
+
 /// Pipelines and tables for one device.
 #[derive(Debug)]
 pub struct Renderer {

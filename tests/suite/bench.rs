@@ -24,7 +24,7 @@ fn settings_are_measured_reported_and_drawn() {
 
     let report = read_json(&json);
     let settings = report["settings"].as_array().unwrap();
-    assert_eq!((&report["schema"], settings.len()), (&"specula-bench/1".into(), 16));
+    assert_eq!((&report["schema"], settings.len()), (&"specula-bench/1".into(), 17));
     assert_eq!((&settings[0]["quality"], &settings[0]["ratio"]), (&"standard".into(), &1.0.into()));
     for setting in settings {
         let errors =
@@ -32,6 +32,8 @@ fn settings_are_measured_reported_and_drawn() {
         let times = [&setting["ratio"], &setting["times"]["wall_ms"]].map(|time| time.as_f64().unwrap());
         assert!(errors.into_iter().chain(times).all(|x| x > 0.0 && x.is_finite()), "{setting}");
     }
+    let paths: Vec<_> = settings.iter().map(|setting| &setting["path"]).collect();
+    assert!(paths.contains(&&"faster".into()) && paths.contains(&&"forward".into()), "{paths:?}");
     let on_front = |which: &str| settings.iter().filter(|setting| setting[which] == true).count();
     assert!(on_front("is_on_picture_front") > 0 && on_front("is_on_shading_front") > 0, "{report}");
     let light_of = |quality: &str| {

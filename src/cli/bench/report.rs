@@ -52,6 +52,8 @@ pub(super) struct Row {
     pub(super) supersampling: u32,
     pub(super) precision: &'static str,
     pub(super) prefilter_side: u32,
+    /// From triangles to radiance: `forward`, `deferred`, or the `faster` of both as estimated.
+    pub(super) path: &'static str,
     /// The name without its samples.
     #[serde(skip)]
     pub(super) light_name: String,
@@ -91,6 +93,7 @@ impl Row {
                 Precision::Float => "float",
             },
             prefilter_side: setting.prefilter_side,
+            path: setting.path.name(),
             light_name: setting.light_name(),
             sampling: setting.sampling(),
             times,
