@@ -5,8 +5,7 @@ use crate::scene::SpecularTile;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Texels around a tile that repeat the octahedron's neighbours.
-const BORDER: u32 = 1;
+const BORDER: u32 = SpecularTile::BORDER;
 
 /// Tiles of one atlas and its texels.
 #[derive(Debug)]
@@ -18,21 +17,10 @@ pub(super) struct Atlas {
 }
 
 impl Atlas {
-    /// An empty atlas for tiles of the given interior sides, set on shelves two of the largest wide.
-    pub(super) fn new(sizes: &[u32]) -> Self {
-        let width = 2 * sizes.iter().map(|size| size + 2 * BORDER).max().unwrap_or(0);
-        let (mut x, mut y, mut shelf) = (0, 0, 0);
-        let mut tiles = Vec::with_capacity(sizes.len());
-        for &size in sizes {
-            let side = size + 2 * BORDER;
-            if x + side > width {
-                (x, y, shelf) = (0, y + shelf, 0);
-            }
-            tiles.push(SpecularTile { origin: [x + BORDER, y + BORDER], size });
-            x += side;
-            shelf = shelf.max(side);
-        }
-        let height = y + shelf;
+    /// An empty atlas for `tiles`.
+    pub(super) fn new(tiles: Vec<SpecularTile>) -> Self {
+        let end = |axis: usize| tiles.iter().map(|tile| tile.origin[axis] + tile.size + BORDER).max().unwrap_or(0);
+        let (width, height) = (end(0), end(1));
         Self { tiles, width, height, texels: vec![Vec3::ZERO; (width * height) as usize] }
     }
 
@@ -83,7 +71,13 @@ mod tests {
 
     #[test]
     fn tiles_and_their_borders_do_not_overlap() {
-        let mut atlas = Atlas::new(&[64, 64, 32, 16, 16, 16, 8]);
+        for (mirror, finest) in [(64, 32), (32, 64), (64, 64)] {
+            tiles_do_not_overlap((0..9).map(|level| SpecularTile::of_level(level, mirror, finest)).collect());
+        }
+    }
+
+    fn tiles_do_not_overlap(tiles: Vec<SpecularTile>) {
+        let mut atlas = Atlas::new(tiles);
         for level in 0..atlas.tiles.len() {
             atlas.fill(level, |_| DVec3::splat(level as f64 + 1.0));
         }
@@ -96,7 +90,7 @@ mod tests {
     #[test]
     fn the_border_holds_the_neighbours_on_the_sphere() {
         let size = 16;
-        let mut atlas = Atlas::new(&[size]);
+        let mut atlas = Atlas::new(vec![SpecularTile { origin: [1, 1], size }]);
         atlas.fill(0, direction_from_octahedral);
         let at = |x: u32, y: u32| atlas.texels[(y * atlas.width + x) as usize];
         for i in 1..=size {
