@@ -15,12 +15,7 @@ use rayon::prelude::*;
 
 /// Rows and columns of the tables on the way, and the steps of the search in each.
 const GRIDS: [(usize, usize, usize); 5] =
-    [(3, 3, 200), (5, 5, 200), (8, 9, 200), (15, COLUMNS, 200), (FITTED_ROWS.end - FITTED_ROWS.start, COLUMNS, 200)];
-/// Then times that each texel is sought alone, and steps of the search in each.
-const SWEEPS: usize = 10;
-const STEPS_OF_TEXEL: usize = 25;
-/// And in the end of all together.
-const LAST_STEPS: usize = 100;
+    [(3, 3, 200), (5, 5, 200), (8, 9, 400), (15, COLUMNS, 400), (FITTED_ROWS.end - FITTED_ROWS.start, COLUMNS, 900)];
 /// Lobes that are looked at to a step between texels of the finest table.
 const LOBES_PER_STEP: usize = 2;
 /// Starts of the search at the first lobe.
@@ -68,17 +63,6 @@ impl<'a> Lobes<'a> {
         for (rows, columns, steps) in GRIDS {
             grid = self.descended(&grid.resampled(rows, columns), steps);
         }
-        let near = self.near_nodes(&grid);
-        for sweep in 0..SWEEPS {
-            // Two of one colour share no lobe.
-            for color in 0..4 {
-                let is_next = |node: &usize| grid.color(*node) == color;
-                let better = |node: usize| (node, self.texel_sought(&grid, &near[node], node, sweep));
-                let better: Vec<_> = (0..grid.len()).into_par_iter().filter(is_next).map(better).collect();
-                better.into_iter().for_each(|(node, at)| grid.set(node, &at));
-            }
-        }
-        grid = self.descended(&grid, LAST_STEPS);
         (0..grid.len()).map(|i| Shared::from_variables(&grid.held(i)).with_bounded_shares()).collect()
     }
 
@@ -86,69 +70,11 @@ impl<'a> Lobes<'a> {
         grid.with(&descend(|at| self.cost(&grid.with(at)), grid.variables().to_vec(), 0.3, steps))
     }
 
-    /// The lobes that each node has a share of.
-    fn near_nodes(&self, grid: &Grid) -> Vec<Vec<usize>> {
-        let mut near = vec![Vec::new(); grid.len()];
-        for (i, sample) in self.samples.iter().enumerate() {
-            let corners = grid.corners(sample.place).into_iter().filter(|(_, share)| *share > 0.0);
-            corners.for_each(|(node, _)| near[node].push(i));
-        }
-        near
-    }
-
-    /// The variables of one node where the error is least, all others being as they are: from its own, and from those of
-    /// a neighbour, as the search may end in different minima.
-    fn texel_sought(&self, grid: &Grid, near: &[usize], node: usize, sweep: usize) -> Vec<f64> {
-        let cost = |at: &[f64]| self.cost_near(grid, near, node, at);
-        let own = grid.at(node).to_vec();
-        let starts = [grid.at(grid.neighbour(node, sweep)).to_vec(), self.elsewhere(grid, near, node, sweep)];
-        let ends = std::iter::once(own.clone()).chain(starts).map(|start| descend(cost, start, 0.03, STEPS_OF_TEXEL));
-        let mut least = (own, f64::INFINITY);
-        for end in ends {
-            let value = cost(&end).0;
-            // False for what is not a number.
-            if value < least.1 {
-                least = (end, value);
-            }
-        }
-        least.0
-    }
-
-    /// Taps of the lobe at a node, from a start of its own for each sweep.
-    fn elsewhere(&self, grid: &Grid, near: &[usize], node: usize, sweep: usize) -> Vec<f64> {
-        let share = |i: &usize| {
-            let corners = self.samples[*i].place;
-            grid.corners(corners).iter().filter(|corner| corner.0 == node).map(|corner| corner.1).sum::<f64>()
-        };
-        let Some(nearest) = near.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else {
-            return grid.at(node).to_vec();
-        };
-        let sample = &self.samples[*nearest];
-        let start = random_start((node * SWEEPS + sweep) as u32, grid.taps(), sample.level);
-        sample.alone(&start)
-    }
-
-    /// The part of [`Self::cost`] that a node has to do with, its variables being those given.
-    fn cost_near(&self, grid: &Grid, near: &[usize], node: usize, at: &[f64]) -> (f64, Vec<f64>) {
-        let bounded = grid.bounded(node, at);
-        let (mut value, mut gradient) = grid.beyond_cost(node, at, OUTSIDE);
-        for sample in near.iter().map(|i| &self.samples[*i]) {
-            let corners = grid.corners(sample.place);
-            let (cost, by) = sample.lobe.cost_and_gradient(&grid.mean(corners, Some((node, at))));
-            let share: f64 = corners.iter().filter(|corner| corner.0 == node).map(|corner| corner.1).sum();
-            value += sample.counts * cost;
-            for (((into, by), free), bounded) in gradient.iter_mut().zip(by).zip(at).zip(&bounded) {
-                *into += if free == bounded { sample.counts * share * by } else { 0.0 };
-            }
-        }
-        (value, gradient)
-    }
-
     /// The mean error with a table, and how it grows with each of the table's variables.
     fn cost(&self, grid: &Grid) -> (f64, Vec<f64>) {
         let see = |sample: &Sample| {
             let corners = grid.corners(sample.place);
-            let (cost, gradient) = sample.lobe.cost_and_gradient(&grid.mean(corners, None));
+            let (cost, gradient) = sample.lobe.cost_and_gradient(&grid.mean(corners));
             (corners, sample.counts, cost, gradient)
         };
         let seen: Vec<_> = self.samples.par_iter().map(see).collect();

@@ -38,34 +38,11 @@ impl Grid {
         &self.variables[node * self.size..][..self.size]
     }
 
-    pub(super) fn set(&mut self, node: usize, variables: &[f64]) {
-        self.variables[node * self.size..][..self.size].copy_from_slice(variables);
-    }
-
-    /// One of four, none of which two nodes beside or above one another have, nor across a corner.
-    pub(super) fn color(&self, node: usize) -> usize {
-        node / self.columns % 2 * 2 + node % self.columns % 2
-    }
-
-    /// One of the nodes beside and above, another for each `turn`.
-    pub(super) fn neighbour(&self, node: usize, turn: usize) -> usize {
-        let (row, column) = (node / self.columns, node % self.columns);
-        let step = |i: usize, steps: usize, forth: bool| if forth && i + 1 < steps || i == 0 { i + 1 } else { i - 1 };
-        match turn % 4 {
-            0 => row * self.columns + step(column, self.columns, true),
-            1 => step(row, self.rows, true) * self.columns + column,
-            2 => row * self.columns + step(column, self.columns, false),
-            _ => step(row, self.rows, false) * self.columns + column,
-        }
-    }
-
-    /// What the table holds between four nodes, one of which may have other variables than its own.
-    pub(super) fn mean(&self, corners: [(usize, f64); 4], other: Option<(usize, &[f64])>) -> Shared {
+    /// What the table holds between four nodes.
+    pub(super) fn mean(&self, corners: [(usize, f64); 4]) -> Shared {
         let mut values = vec![0.0; self.size];
         for (node, share) in corners.into_iter().filter(|(_, share)| *share > 0.0) {
-            let variables = other.filter(|(other, _)| *other == node).map_or_else(|| self.at(node), |(_, at)| at);
-            let held = self.absolute(node, self.bounded(node, variables));
-            values.iter_mut().zip(held).for_each(|(value, held)| *value += share * held);
+            values.iter_mut().zip(self.held(node)).for_each(|(value, held)| *value += share * held);
         }
         Shared::from_variables(&values)
     }
@@ -106,7 +83,7 @@ impl Grid {
         first + (last - first) * (node / self.columns) as f64 / (self.rows - 1) as f64
     }
 
-    pub(super) fn taps(&self) -> usize {
+    fn taps(&self) -> usize {
         (self.size - 2) / (TAP_VARIABLES + 2)
     }
 
@@ -135,7 +112,7 @@ impl Grid {
     }
 
     /// What broken bounds of a node cost, and how that grows with each of its variables.
-    pub(super) fn beyond_cost(&self, node: usize, variables: &[f64], outside: f64) -> (f64, Vec<f64>) {
+    fn beyond_cost(&self, node: usize, variables: &[f64], outside: f64) -> (f64, Vec<f64>) {
         let beyond = self.beyond(node, variables);
         let value = outside * beyond.iter().map(|x| x * x).sum::<f64>();
         (value, beyond.iter().map(|beyond| 2.0 * outside * beyond).collect())

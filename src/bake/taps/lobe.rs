@@ -17,7 +17,7 @@ pub(super) const PLACE_MAX: f64 = 4.0;
 /// F0 of the two lobes that share places and levels.
 const F0: [f64; 2] = [1.0, 0.04];
 /// What an error of the second counts against one of the first.
-const DIELECTRIC: f64 = 0.3;
+const DIELECTRIC: f64 = 0.5;
 const COUNTS: [f64; 2] = [1.0, DIELECTRIC];
 /// Irradiance and its parts of degree 1 and 2, all seen along the normal.
 const PARTS: [usize; 3] = [COSINE, LINEAR, QUADRATIC];
