@@ -1,4 +1,4 @@
-#import "light/flat_lobes.wgsl"
+#import "lighting/flat_lobes.wgsl"
 #import <irradiance>
 #import <reflection>
 #import <suns>

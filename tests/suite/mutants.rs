@@ -287,7 +287,7 @@ const IN_TIERS: &[Mutant] = &[
     fault("lighting/environment_taps.wgsl", "plane.normal) * linear", "plane.normal) * quadratic"),
     fault("lighting/environment_taps.wgsl", "seen.parts.x", "seen.parts.y"),
     fault("lighting/environment_taps.wgsl", "lobes.multiscatter * multiscatter.y", "lobes.multiscatter * diffuse.y"),
-    fault("light/flat_lobes.wgsl", "vec2f(0.0578, 0.2615) - ", "vec2f(0.0578, 0.2615) + "),
+    fault("lighting/flat_lobes.wgsl", "vec2f(0.0578, 0.2615) - ", "vec2f(0.0578, 0.2615) + "),
     fault("lighting/taps.wgsl", "(lobes.single_scatter - dielectric)", "lobes.single_scatter"),
     fault("lighting/reflection_draft.wgsl", "vec3f(others.z)", "vec3f(one.w)"),
     fault("lighting/reflection_standard.wgsl", "vec3f(others.z), vec3f(one.w)", "vec3f(one.w), vec3f(others.z)"),
@@ -298,7 +298,7 @@ const IN_TIERS: &[Mutant] = &[
 
 /// Files whose faults [`IN_TIERS`] must show.
 const TIER_LIGHTING: [&str; 9] = [
-    "light/flat_lobes.wgsl",
+    "lighting/flat_lobes.wgsl",
     "lighting/environment_taps.wgsl",
     "lighting/shape_isotropic.wgsl",
     "lighting/sun.wgsl",
