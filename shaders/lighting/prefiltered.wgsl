@@ -16,10 +16,17 @@ fn level_of(perceptual_roughness: f32) -> f32 {
     return select(LAST_LEVEL + 2.0 * log2(perceptual_roughness), below, x < 1.0);
 }
 
-// What one level holds, at octahedral coordinates.
+// What one level holds, at octahedral coordinates. Tiles lie as `SpecularTile::of_level` says.
 fn atlas_level(level: f32, uv: vec2f) -> vec3f {
-    let tile = environment.tiles[u32(level)];
-    return textureSampleLevel(environment_atlas, clamp_sampler, tile.xy + uv * tile.zw, 0.0).xyz;
+    let mirror_side = environment.atlas.z;
+    let finest_side = environment.atlas.w;
+    let pair = floor(0.5 * level - 0.5);
+    let share = exp2(-pair);
+    let side = max(share, 0.25) * finest_side;
+    let column = (level - 1.0 - 2.0 * pair) * (side + 2.0);
+    let row = mirror_side + 2.0 + 2.0 * finest_side * (1.0 - share) + 2.0 * pair;
+    let texel = select(vec2f(column, row) + uv * side, uv * mirror_side, level < 0.5) + 1.0;
+    return textureSampleLevel(environment_atlas, clamp_sampler, texel * environment.atlas.xy, 0.0).xyz;
 }
 
 // GGX-prefiltered radiance around a direction of the panorama, linear between two levels.

@@ -1,13 +1,12 @@
-#import "light/irradiance_sh.wgsl"
 #import "lighting/clamp_sampler.wgsl"
-#import "math/octahedral.wgsl"
+#import "lighting/prefiltered.wgsl"
 
 // A few prefiltered lookups in the plane of incidence that stand for the specular lobe, as `bake::taps` lays them out.
 @group(0) @binding(8) var taps_table: texture_2d<f32>;
 
-const TAPS_COLUMNS: f32 = 21.0;
+const TAPS_COLUMNS: f32 = 17.0;
 const TAPS_ROWS: f32 = 33.0;
-const TAPS_TILES: f32 = 12.0;
+const TAPS_TILES: f32 = 10.0;
 // Places and spreads as the table has them, and weights of irradiance's parts.
 const TAPS_SCALE: f32 = 8.0;
 const TAPS_BIAS: f32 = -4.0;
@@ -19,9 +18,20 @@ struct Plane {
     mirror: vec3f,
     // Across it within the plane of incidence, away from the normal: alpha times the sine of the view's angle long.
     across: vec3f,
-    NoV: f32,
     level: f32,
     normal: vec3f,
+    // Where the first tile of the table is read.
+    taps_uv: vec2f,
+}
+
+// What the specular lobe sees of the environment on average: irradiance stands for its wide skirt.
+struct Reflection {
+    // Through the taps, times their shares.
+    radiance: vec3f,
+    // The share that they leave to irradiance / pi.
+    rest: vec3f,
+    // How much more there is of irradiance's parts of degree 1 and 2.
+    parts: vec2f,
 }
 
 fn plane_of_incidence(lobes: Lobes, to_environment: mat3x3f) -> Plane {
@@ -30,14 +40,13 @@ fn plane_of_incidence(lobes: Lobes, to_environment: mat3x3f) -> Plane {
     let alpha = lobes.perceptual_roughness * lobes.perceptual_roughness;
     let twice = 2.0 * lobes.NoV;
     let across = (n * (twice * lobes.NoV - 1.0) - v * lobes.NoV) * alpha;
-    return Plane(n * twice - v, across, lobes.NoV, level_of(lobes.perceptual_roughness), n);
+    let level = level_of(lobes.perceptual_roughness);
+    let texel = vec2f(sqrt(lobes.NoV), level / LAST_LEVEL) * (vec2f(TAPS_COLUMNS, TAPS_ROWS) - 1.0) + 0.5;
+    return Plane(n * twice - v, across, level, n, texel / vec2f(TAPS_COLUMNS, TAPS_ROWS * TAPS_TILES));
 }
 
 fn taps_texel(tile: f32, plane: Plane) -> vec4f {
-    let steps = vec2f(TAPS_COLUMNS, TAPS_ROWS) - 1.0;
-    let texel = vec2f(plane.NoV, plane.level / LAST_LEVEL) * steps + 0.5;
-    let uv = (texel + vec2f(0.0, tile * TAPS_ROWS)) / vec2f(TAPS_COLUMNS, TAPS_ROWS * TAPS_TILES);
-    return textureSampleLevel(taps_table, clamp_sampler, uv, 0.0);
+    return textureSampleLevel(taps_table, clamp_sampler, plane.taps_uv + vec2f(0.0, tile / TAPS_TILES), 0.0);
 }
 
 // Two lookups of neighbouring levels, each at its own place: place, level and spread as the table has them. The mirror
@@ -53,15 +62,9 @@ fn tap(plane: Plane, stored: vec3f) -> vec3f {
     return mix(atlas_level(lower, narrow), atlas_level(lower + 1.0, wide), share) * environment.radiance_scale;
 }
 
-// The skirt of the lobe, of which `rest` is the share: parts of irradiance, the weights for F0 = 1 and 0.04 as the table
-// has them.
-fn skirt(plane: Plane, stored: vec4f, metal: vec3f, rest: vec3f) -> vec3f {
-    let weights = stored * PARTS_SCALE + PARTS_BIAS;
-    let linear = irradiance_linear_sh(environment.irradiance_over_pi, plane.normal);
-    let quadratic = irradiance_quadratic_sh(environment.irradiance_over_pi, plane.normal);
-    return environment.irradiance_over_pi[0].xyz * rest
-        + linear * mix(vec3f(weights.z), vec3f(weights.x), metal)
-        + quadratic * mix(vec3f(weights.w), vec3f(weights.y), metal);
+// The weights of irradiance's parts, as the table has them.
+fn parts(stored: vec2f) -> vec2f {
+    return stored * PARTS_SCALE + PARTS_BIAS;
 }
 
 // How much of the lobe, by energy and channel, is the one with F0 = 1; the rest is the one with F0 = 0.04. The taps'

@@ -8,22 +8,25 @@ use super::panorama::Panorama;
 use super::sun;
 use crate::math::spaces::direction_from_octahedral;
 use crate::progress::Progress;
-use crate::scene::{EnvironmentImage, EnvironmentMaps};
+use crate::scene::{EnvironmentImage, EnvironmentMaps, SpecularTile};
 use glam::DVec3;
 
 const LEVELS: usize = EnvironmentMaps::LEVELS;
 
-/// Interior sides of the tiles of a large panorama, texels. Level 0 is as sharp as a panorama of 1024 x 512. The others
-/// follow the lobe. The rough ones are finer than that asks for: a large flat surface magnifies them until the creases of bilinear
-/// lookup show, and they fit into room that the atlas has anyway.
-const LARGEST_SIDES: [u32; LEVELS] = [1024, 512, 512, 256, 256, 128, 128, 128, 64];
+/// Largest interior sides of the tiles of level 0, which is as sharp as a panorama of 1024 x 512, and of level 1. From
+/// there sides halve with every second level, down to a quarter. That is finer than the rough ones ask for: a large flat
+/// surface magnifies them until the creases of bilinear lookup show.
+const LARGEST_SIDES: [u32; 2] = [1024, 512];
 
-/// No tile has a smaller interior.
+/// Of level 1, in the smallest panorama.
+const SMALLEST_FINEST_SIDE: u32 = 256;
+
+/// No mirror tile has a smaller interior.
 const SMALLEST_SIDE: u32 = 32;
 
 /// Of what [`bake`] computes: raise it with every change of its results beyond rounding, so that nobody reads what an
 /// older version has stored. A test holds it against them.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Limits of [`bake`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,8 +51,9 @@ impl Default for BakeOptions {
 /// taken out. The convolution is carried out per spherical harmonic, in float64, and the result is the same on every run. Radiance in cd/m2, as in the image.
 pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Progress) -> EnvironmentMaps {
     progress.begin("Prefiltering the environment", LEVELS as u64 + 1);
-    let sides = tile_sides(image.width, options);
-    let mut atlas = Atlas::new(&sides);
+    let [mirror_side, finest_side] = tile_sides(image.width, options);
+    let tile = |level| SpecularTile::of_level(level, mirror_side, finest_side);
+    let mut atlas = Atlas::new((0..LEVELS).map(tile).collect());
     fill_mirror_level(&mut atlas, image);
     progress.advance(1);
 
@@ -74,17 +78,16 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
     }
 }
 
-/// A mirror tile of half the panorama's width has about its resolution: the octahedron spends its square on the whole
-/// sphere, the panorama half its rows on the poles. But the tile's bilinear lookup blurs once more what that of the
-/// panorama blurs; twice as many texels a side make little of it. The other tiles follow the lobe, which is seen over
-/// the texels of a small panorama too.
-fn tile_sides(panorama_width: u32, options: &BakeOptions) -> [u32; LEVELS] {
-    let limit = options.max_side.clamp(SMALLEST_SIDE, LARGEST_SIDES[0]);
+/// Sides of the tiles of levels 0 and 1. A mirror tile of half the panorama's width has about its resolution: the
+/// octahedron spends its square on the whole sphere, the panorama half its rows on the poles. But the tile's bilinear
+/// lookup blurs once more what that of the panorama blurs; twice as many texels a side make little of it. Lobes over the
+/// texels of a small panorama need finer tiles than the mirror image.
+fn tile_sides(panorama_width: u32, options: &BakeOptions) -> [u32; 2] {
+    let [largest_mirror, largest_finest] = LARGEST_SIDES;
+    let limit = options.max_side.clamp(SMALLEST_SIDE, largest_mirror);
     let limit = 1 << limit.ilog2();
     let mirror = panorama_width.clamp(1, limit).next_power_of_two().clamp(SMALLEST_SIDE, limit);
-    let mut sides = LARGEST_SIDES.map(|side| side.min(mirror.max(2 * SMALLEST_SIDE)));
-    sides[0] = mirror;
-    sides
+    [mirror, (2 * mirror).clamp(SMALLEST_FINEST_SIDE, largest_finest)]
 }
 
 fn fill_mirror_level(atlas: &mut Atlas, image: &EnvironmentImage) {

@@ -5,8 +5,7 @@ use crate::scene::SpecularTile;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Texels around a tile that repeat the octahedron's neighbours.
-const BORDER: u32 = 1;
+const BORDER: u32 = SpecularTile::BORDER;
 
 /// Tiles of one atlas and its texels.
 #[derive(Debug)]
@@ -18,29 +17,10 @@ pub(super) struct Atlas {
 }
 
 impl Atlas {
-    /// An empty atlas for tiles of the given interior sides, none larger than the one before: as wide as the first two,
-    /// each tile as high up as it fits, and then as far left.
-    pub(super) fn new(sizes: &[u32]) -> Self {
-        let sides: Vec<u32> = sizes.iter().map(|size| size + 2 * BORDER).collect();
-        let width = sides.iter().take(2).sum();
-        let mut corners: Vec<[u32; 2]> = Vec::with_capacity(sides.len());
-        for &side in &sides {
-            let placed = || corners.iter().zip(&sides);
-            let is_free = |[x, y]: [u32; 2]| {
-                let is_apart = |(&[left, top], &other): (&[u32; 2], &u32)| {
-                    x + side <= left || left + other <= x || y + side <= top || top + other <= y
-                };
-                x + side <= width && placed().all(is_apart)
-            };
-            let beside = placed().flat_map(|(&[x, y], &side)| [[x + side, y], [x, y + side]]);
-            let places = beside.chain([[0, 0]]).filter(|place| is_free(*place));
-            // Below the tile that reaches farthest down, at the left edge, there is always room.
-            let corner = places.min_by_key(|[x, y]| (*y, *x)).unwrap_or_default();
-            corners.push(corner);
-        }
-        let height = corners.iter().zip(&sides).map(|([_, y], side)| y + side).max().unwrap_or(0);
-        let tile = |([x, y], &size): ([u32; 2], &u32)| SpecularTile { origin: [x + BORDER, y + BORDER], size };
-        let tiles = corners.into_iter().zip(sizes).map(tile).collect();
+    /// An empty atlas for `tiles`.
+    pub(super) fn new(tiles: Vec<SpecularTile>) -> Self {
+        let end = |axis: usize| tiles.iter().map(|tile| tile.origin[axis] + tile.size + BORDER).max().unwrap_or(0);
+        let (width, height) = (end(0), end(1));
         Self { tiles, width, height, texels: vec![Vec3::ZERO; (width * height) as usize] }
     }
 
@@ -91,7 +71,13 @@ mod tests {
 
     #[test]
     fn tiles_and_their_borders_do_not_overlap() {
-        let mut atlas = Atlas::new(&[64, 64, 32, 16, 16, 16, 8]);
+        for (mirror, finest) in [(64, 32), (32, 64), (64, 64)] {
+            tiles_do_not_overlap((0..9).map(|level| SpecularTile::of_level(level, mirror, finest)).collect());
+        }
+    }
+
+    fn tiles_do_not_overlap(tiles: Vec<SpecularTile>) {
+        let mut atlas = Atlas::new(tiles);
         for level in 0..atlas.tiles.len() {
             atlas.fill(level, |_| DVec3::splat(level as f64 + 1.0));
         }
@@ -103,17 +89,16 @@ mod tests {
 
     #[test]
     fn tiles_of_a_large_panorama_leave_little_room() {
-        let sizes = [1024, 512, 512, 256, 256, 128, 128, 128, 64];
-        let atlas = Atlas::new(&sizes);
-        let used: u32 = sizes.iter().map(|size| (size + 2) * (size + 2)).sum();
-        assert_eq!((atlas.width, atlas.height), (1540, 1284));
-        assert!(atlas.width * atlas.height * 8 < used * 9, "{used}");
+        let tiles: Vec<_> = (0..9).map(|level| SpecularTile::of_level(level, 1024, 512)).collect();
+        let used: u32 = tiles.iter().map(|tile| (tile.size + 2).pow(2)).sum();
+        let atlas = Atlas::new(tiles);
+        assert!(atlas.width * atlas.height * 5 < used * 6, "{} x {}, {used}", atlas.width, atlas.height);
     }
 
     #[test]
     fn the_border_holds_the_neighbours_on_the_sphere() {
         let size = 16;
-        let mut atlas = Atlas::new(&[size]);
+        let mut atlas = Atlas::new(vec![SpecularTile { origin: [1, 1], size }]);
         atlas.fill(0, direction_from_octahedral);
         let at = |x: u32, y: u32| atlas.texels[(y * atlas.width + x) as usize];
         for i in 1..=size {

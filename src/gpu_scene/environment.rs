@@ -2,7 +2,7 @@
 
 use super::UploadError;
 use crate::gpu::formats;
-use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS};
+use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile};
 use crate::shader::types::EnvironmentUniform;
 use glam::{DMat3, Vec3};
 use half::f16;
@@ -42,18 +42,14 @@ impl GpuEnvironment {
         let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
         let intensity = environment.intensity;
         let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
-        let mut tiles = [[0.0; 4]; EnvironmentMaps::LEVELS];
-        for (tile, out) in maps.tiles.iter().zip(&mut tiles) {
-            let [x, y] = tile.origin.map(|texel| texel as f32);
-            *out = [x / width, y / height, tile.size as f32 / width, tile.size as f32 / height];
-        }
+        let [mirror_side, finest_side] = tile_sides(maps)?;
         let (suns, sun_illuminance) = suns(maps, environment);
         let uniform = EnvironmentUniform {
             sun_count: maps.suns.len().min(MAX_SUNS) as u32,
             suns,
             sun_illuminance,
             irradiance_over_pi: maps.irradiance_over_pi.map(|c| (c * intensity).as_vec3().extend(0.0).to_array()),
-            tiles,
+            atlas: [1.0 / width, 1.0 / height, mirror_side as f32, finest_side as f32],
             environment_from_world: columns(environment_from_world),
             radiance_scale: scale * intensity as f32,
             ..Default::default()
@@ -89,6 +85,13 @@ impl GpuEnvironment {
         self.panorama = Some(panorama.clone());
         Ok(panorama)
     }
+}
+
+/// Sides of the tiles of levels 0 and 1, which say where all are.
+fn tile_sides(maps: &EnvironmentMaps) -> Result<[u32; 2], UploadError> {
+    let sides = [0, 1].map(|level| maps.tiles.get(level).map_or(0, |tile| tile.size));
+    let tiles = (0..EnvironmentMaps::LEVELS).map(|level| SpecularTile::of_level(level, sides[0], sides[1]));
+    if maps.tiles.iter().copied().eq(tiles) { Ok(sides) } else { Err(UploadError::EnvironmentLayout) }
 }
 
 /// Directions in the world with the squared radius of each disc's half vectors, seen along the normal; illuminances.

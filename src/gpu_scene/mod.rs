@@ -33,6 +33,8 @@ pub enum UploadError {
     TooLarge { what: &'static str, needed: u64, allowed: u64 },
     #[error("the environment is {width} x {height}, the device allows textures up to {allowed}; use a smaller one")]
     EnvironmentTooLarge { width: u32, height: u32, allowed: u32 },
+    #[error("the tiles of the environment's maps do not lie as a bake lays them out")]
+    EnvironmentLayout,
     #[error("the scene has an environment, but no maps baked from it were given")]
     MissingMaps,
 }

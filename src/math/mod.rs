@@ -1,6 +1,7 @@
 //! Shared by every layer: directions, projections, colour, quadrature. No scene, no GPU.
 
 pub mod color;
+pub mod descent;
 pub mod parameter;
 pub mod quadrature;
 pub mod simplex;

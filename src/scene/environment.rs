@@ -92,6 +92,25 @@ pub struct SpecularTile {
     pub size: u32,
 }
 
+impl SpecularTile {
+    /// Texels around a tile that repeat the octahedron's neighbours.
+    pub const BORDER: u32 = 1;
+
+    /// Where a level lies in an atlas whose mirror level and level 1 have these sides, both powers of two, the second at
+    /// least 4. Below the mirror level stand pairs of levels side by side, each pair half as large as the one above,
+    /// except for the last: so a shader finds a tile by arithmetic, where a list of them would be read lane by lane.
+    pub fn of_level(level: usize, mirror_side: u32, finest_side: u32) -> Self {
+        let Some(below) = level.checked_sub(1) else {
+            return Self { origin: [Self::BORDER; 2], size: mirror_side };
+        };
+        let side = |pair: usize| (finest_side >> pair).max(finest_side / 4);
+        let (pair, size) = (below / 2, side(below / 2));
+        let rows_above: u32 = (0..pair).map(|pair| side(pair) + 2 * Self::BORDER).sum();
+        let column = (below % 2) as u32 * (size + 2 * Self::BORDER);
+        Self { origin: [column + Self::BORDER, mirror_side + rows_above + 3 * Self::BORDER], size }
+    }
+}
+
 /// What shading reads of an environment, baked from its image, in the panorama's own frame.
 ///
 /// Specular: one octahedral tile a level, all in one atlas, so that a level may have any size
@@ -106,7 +125,7 @@ pub struct EnvironmentMaps {
     /// cosine lobe (Ramamoorthi and Hanrahan 2001): evaluated as
     /// c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3 z^2 - 1) + c7 xz + c8 (x^2 - y^2).
     pub irradiance_over_pi: [DVec3; 9],
-    /// [`EnvironmentMaps::LEVELS`] of them. Level 0 is the mirror image, the others are for [`EnvironmentMaps::perceptual_roughness_at`].
+    /// [`EnvironmentMaps::LEVELS`] of them, as [`SpecularTile::of_level`] lays them out. Level 0 is the mirror image, the others are for [`EnvironmentMaps::perceptual_roughness_at`].
     pub tiles: Vec<SpecularTile>,
     pub atlas_width: u32,
     pub atlas_height: u32,

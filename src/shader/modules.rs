@@ -110,6 +110,7 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
             "environment",
             match (environment, material.shading) {
                 (true, Shading::Disney) => Slot::File("lighting/environment_disney.wgsl"),
+                (true, _) if features.reads_taps() => Slot::File("lighting/environment_taps.wgsl"),
                 (true, _) => Slot::File("lighting/environment.wgsl"),
                 (false, _) => Slot::File("lighting/environment_none.wgsl"),
             },

@@ -78,8 +78,8 @@ gpu_struct! {
     pub struct EnvironmentUniform {
         /// Premultiplied coefficients, see `scene::EnvironmentMaps`, times the intensity.
         irradiance_over_pi: [vec4f; 9],
-        /// Origin and size of each level's tile in the atlas, as texture coordinates.
-        tiles: [vec4f; 9],
+        /// Of the atlas: the size of a texel as texture coordinates, and the sides of the tiles of levels 0 and 1, texels.
+        atlas: vec4f,
         environment_from_world: mat3x3f,
         /// Intensity, and the scale that brought the radiance into half-float range.
         radiance_scale: f32,

@@ -194,10 +194,16 @@ fn tiers_follow_the_brdf_summed_over_the_sky() {
         let of_metal = errors(&gpu, &image, metal);
         print(&format!("{file}, metal"), &of_metal);
         print(&format!("{file}, dielectric"), &errors(&gpu, &image, dielectric));
-        print(&format!("{file} without its sun, metal"), &errors(&gpu, &sun::extract(&image).residual, metal));
-        // What the tiers promise; measured 0.8 % and 0.7 % at most.
+        let overcast = errors(&gpu, &sun::extract(&image).residual, metal);
+        print(&format!("{file} without its sun, metal"), &overcast);
+        // Measured 0.34 % and 0.28 % at most.
         for [_, _, standard, high] in of_metal {
-            assert!(standard <= 0.03 && high <= 0.015, "{file}: {standard}, {high}");
+            assert!(standard <= 0.004 && high <= 0.0033, "{file}: {standard}, {high}");
+        }
+        // Without suns a quarter of the split sum's error; of the narrowest lobe, two taps leave a little more.
+        for (r, [split_sum, _, standard, _]) in PERCEPTUAL_ROUGHNESS.into_iter().zip(overcast) {
+            let share = if r < 0.3 { 1.0 / 3.4 } else { 0.25 };
+            assert!(standard <= share * split_sum, "{file} without its sun, {r}: {standard} of {split_sum}");
         }
     }
 }
@@ -237,9 +243,9 @@ impl Tiers {
         let spheres = vec![
             ("smooth metal", sphere(metal(0.075)), [0.097; 3]),
             ("metal", sphere(metal(0.1)), [0.0247; 3]),
-            ("rough metal", sphere(metal(0.2)), [0.0114, 0.0087, 0.0086]),
-            ("rougher metal", sphere(metal(0.5)), [0.0372, 0.0132, 0.0079]),
-            ("dielectric", sphere(dielectric(0.6)), [0.0578, 0.0195, 0.0119]),
+            ("rough metal", sphere(metal(0.2)), [0.013, 0.0087, 0.0085]),
+            ("rougher metal", sphere(metal(0.5)), [0.0482, 0.0153, 0.0074]),
+            ("dielectric", sphere(dielectric(0.6)), [0.0859, 0.0168, 0.0099]),
         ];
         Self::new(&image, spheres)
     }

@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 pub(super) const LEVELS: usize = EnvironmentMaps::LEVELS - 1;
 /// They, and the parts of irradiance over pi of degree 1 and 2 (Ramamoorthi and Hanrahan 2001).
 pub(super) const KERNELS: usize = LEVELS + 2;
+/// The last level, along the normal, is irradiance over pi: GGX of alpha 1 is the cosine.
+pub(super) const COSINE: usize = LEVELS - 1;
 pub(super) const LINEAR: usize = LEVELS;
 pub(super) const QUADRATIC: usize = LEVELS + 1;
 

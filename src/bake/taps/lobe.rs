@@ -2,14 +2,14 @@
 
 #![expect(non_snake_case, reason = "NoV, VoH and Lambda are the symbols of the papers")]
 
-use super::kernels::{KERNELS, Kernels, LEVELS, LINEAR, QUADRATIC};
-use super::weights::best;
+use super::kernels::{COSINE, KERNELS, Kernels, LEVELS, LINEAR, QUADRATIC};
+use super::shared::Shared;
 use crate::reference::microfacet::distribution::Lambda_GGX_anisotropic;
 use crate::reference::sampling::sample_visible_normal;
 use glam::{DVec2, DVec3};
 
 /// Directions that stand for the lobe.
-const DIRECTIONS: usize = 2048;
+const DIRECTIONS: usize = 1024;
 /// Places of a lookup that are tabulated: steps of 1/32 of alpha.
 const PLACES: usize = 2 * 32 * PLACE_MAX as usize + 1;
 /// Places end here, in units of alpha times the sine of the view's angle.
@@ -18,6 +18,11 @@ pub(super) const PLACE_MAX: f64 = 4.0;
 const F0: [f64; 2] = [1.0, 0.04];
 /// What an error of the second counts against one of the first.
 const DIELECTRIC: f64 = 0.5;
+const COUNTS: [f64; 2] = [1.0, DIELECTRIC];
+/// Irradiance and its parts of degree 1 and 2, all seen along the normal.
+const PARTS: [usize; 3] = [COSINE, LINEAR, QUADRATIC];
+/// Of places, levels and spreads, to find how the cost grows.
+const DIFFERENCE: f64 = 1e-4;
 
 /// One tap: two lookups of neighbouring levels, each at its own place.
 ///
@@ -53,21 +58,49 @@ pub(super) struct Lobe<'a> {
     reach: f64,
     /// For each lobe and place, with all levels.
     places: [Vec<[f64; KERNELS]>; 2],
-    /// For each lobe, with the linear and the quadratic part of irradiance.
-    irradiance: [[f64; 2]; 2],
+    /// For each lobe, with irradiance, its linear and its quadratic part.
+    irradiance: [[f64; 3]; 2],
 }
 
-/// What taps leave: for both lobes, weights (of the taps, of the linear and of the quadratic part of irradiance; the mean
-/// has the rest of the first), and the expected squared error, less the variance of what the lobe itself sees.
-pub(super) struct Outcome {
-    pub(super) weights: [Vec<f64>; 2],
-    pub(super) error: [f64; 2],
+/// What is seen through taps in the place of irradiance: covariances of taps and irradiance's two parts among themselves,
+/// and with either lobe, of all of which irradiance is taken away. Weights w leave an expected squared error of
+/// w.S w - 2 w.p, but for a constant.
+pub(super) struct Covariances {
+    pub(super) squares: Vec<Vec<f64>>,
+    pub(super) products: [Vec<f64>; 2],
 }
 
-impl Outcome {
-    pub(super) fn cost(&self) -> f64 {
-        self.error[0] + DIELECTRIC * self.error[1]
+impl Covariances {
+    /// Of one lobe.
+    pub(super) fn error(&self, lobe: usize, weights: &[f64]) -> f64 {
+        let rows = weights.iter().enumerate().map(|(i, weight)| {
+            let row: f64 = self.squares[i].iter().zip(weights).map(|(square, weight)| square * weight).sum();
+            weight * (row - 2.0 * self.products[lobe][i])
+        });
+        rows.sum()
     }
+
+    /// Of both lobes, each with its weights.
+    fn cost(&self, weights: &[Vec<f64>; 2]) -> f64 {
+        self.error(0, &weights[0]) + DIELECTRIC * self.error(1, &weights[1])
+    }
+
+    /// How the cost grows with each weight.
+    fn by_weights(&self, weights: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        [0, 1].map(|lobe| {
+            let by_weight = |(row, product): (&Vec<f64>, &f64)| {
+                let seen: f64 = row.iter().zip(&weights[lobe]).map(|(square, weight)| square * weight).sum();
+                2.0 * COUNTS[lobe] * (seen - product)
+            };
+            self.squares.iter().zip(&self.products[lobe]).map(by_weight).collect()
+        })
+    }
+}
+
+/// What a tap has to do with everything else.
+struct Row {
+    squares: Vec<f64>,
+    products: [f64; 2],
 }
 
 impl<'a> Lobe<'a> {
@@ -97,7 +130,7 @@ impl<'a> Lobe<'a> {
             theta: NoV.clamp(0.0, 1.0).acos(),
             reach,
             places: std::array::from_fn(|lobe| rows.iter().map(|row| row[lobe]).collect()),
-            irradiance: normal.map(|normal| [normal[LINEAR], normal[QUADRATIC]]),
+            irradiance: normal.map(|normal| PARTS.map(|kernel| normal[kernel])),
         }
     }
 
@@ -107,41 +140,82 @@ impl<'a> Lobe<'a> {
         self.between(tap, tap)
     }
 
-    /// The best weights, those of taps not negative and not above 1 in all, and what remains.
-    pub(super) fn fit(&self, taps: &[Tap]) -> Outcome {
-        let (squares, products) = self.covariances(taps);
-        let weights = products.each_ref().map(|products| best(&squares, products, taps.len()));
-        let error = [0, 1].map(|lobe| error(&squares, &products[lobe], &weights[lobe]));
-        Outcome { weights, error }
+    /// The error of both lobes.
+    pub(super) fn cost(&self, shared: &Shared) -> f64 {
+        self.covariances(&shared.taps).cost(&shared.weights())
     }
 
-    /// What remains with the given weights.
-    pub(super) fn with_weights(&self, taps: &[Tap], weights: &[Vec<f64>; 2]) -> Outcome {
-        let (squares, products) = self.covariances(taps);
-        let error = [0, 1].map(|lobe| error(&squares, &products[lobe], &weights[lobe]));
-        Outcome { weights: weights.clone(), error }
+    /// The error of both lobes, and how it grows with each of the variables.
+    pub(super) fn cost_and_gradient(&self, shared: &Shared) -> (f64, Vec<f64>) {
+        let weights = shared.weights();
+        let covariances = self.covariances(&shared.taps);
+        let count = shared.taps.len();
+        let [metal, dielectric] = covariances.by_weights(&weights);
+        let parts = metal[count..].iter().zip(&dielectric[count..]).map(|(metal, dielectric)| metal + dielectric);
+        let by_taps = self.by_taps(&shared.taps, &weights);
+        let shares = metal[..count].iter().chain(&dielectric[..count]).copied();
+        (covariances.cost(&weights), by_taps.into_iter().flatten().chain(shares).chain(parts).collect())
     }
 
-    /// Of taps and the two parts of irradiance: among themselves, and with either lobe.
-    fn covariances(&self, taps: &[Tap]) -> (Vec<Vec<f64>>, [Vec<f64>; 2]) {
+    /// Of taps and the two parts of irradiance.
+    pub(super) fn covariances(&self, taps: &[Tap]) -> Covariances {
         let (count, size) = (taps.len(), taps.len() + 2);
         let mut squares = vec![vec![0.0; size]; size];
-        for (i, a) in taps.iter().enumerate() {
-            for (j, b) in taps[..=i].iter().enumerate() {
-                squares[i][j] = self.between(*a, *b);
-                squares[j][i] = squares[i][j];
+        let mut products = [vec![0.0; size], vec![0.0; size]];
+        for i in 0..count {
+            let row = self.row(taps, i);
+            for (j, square) in row.squares.iter().enumerate().take(size) {
+                (squares[i][j], squares[j][i]) = (*square, *square);
             }
-            for (part, kernel) in [LINEAR, QUADRATIC].into_iter().enumerate() {
-                squares[i][count + part] = self.with_irradiance(*a, kernel);
-                squares[count + part][i] = squares[i][count + part];
+            (products[0][i], products[1][i]) = (row.products[0], row.products[1]);
+        }
+        for part in 0..2 {
+            let kernel = PARTS[1 + part];
+            squares[count + part][count + part] = self.kernels.between(kernel, kernel, 0.0);
+            let with_irradiance = self.kernels.between(COSINE, kernel, 0.0);
+            for (products, irradiance) in products.iter_mut().zip(&self.irradiance) {
+                products[count + part] = irradiance[1 + part] - with_irradiance;
             }
         }
-        squares[count][count] = self.kernels.between(LINEAR, LINEAR, 0.0);
-        squares[count + 1][count + 1] = self.kernels.between(QUADRATIC, QUADRATIC, 0.0);
-        let with_taps: Vec<[f64; 2]> = taps.iter().map(|tap| self.with_lobes(*tap)).collect();
-        let products =
-            [0, 1].map(|lobe| with_taps.iter().map(|products| products[lobe]).chain(self.irradiance[lobe]).collect());
-        (squares, products)
+        Covariances { squares, products }
+    }
+
+    /// How the cost grows with place, level and spread of each tap, by differences.
+    fn by_taps(&self, taps: &[Tap], weights: &[Vec<f64>; 2]) -> Vec<[f64; 3]> {
+        let part = |i: usize, moved: Tap| {
+            let mut taps = taps.to_vec();
+            taps[i] = moved;
+            let row = self.row(&taps, i);
+            let lobes = [0, 1].map(|lobe| {
+                let weights = &weights[lobe];
+                let seen: f64 = row.squares.iter().zip(weights).map(|(square, weight)| square * weight).sum();
+                COUNTS[lobe] * weights[i] * (2.0 * seen - row.squares[i] * weights[i] - 2.0 * row.products[lobe])
+            });
+            lobes[0] + lobes[1]
+        };
+        let by = |i: usize, step: fn(&mut Tap) -> &mut f64| {
+            let moved = |by: f64| {
+                let mut tap = taps[i];
+                *step(&mut tap) += by;
+                part(i, tap)
+            };
+            (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE)
+        };
+        (0..taps.len())
+            .map(|i| [by(i, |tap| &mut tap.place), by(i, |tap| &mut tap.level), by(i, |tap| &mut tap.spread)])
+            .collect()
+    }
+
+    fn row(&self, taps: &[Tap], i: usize) -> Row {
+        let own = self.with_irradiance(taps[i], COSINE);
+        let irradiance = self.kernels.between(COSINE, COSINE, 0.0);
+        let with_tap = |tap: &Tap| self.between(taps[i], *tap) - own - self.with_irradiance(*tap, COSINE) + irradiance;
+        let with_part =
+            |kernel: &usize| self.with_irradiance(taps[i], *kernel) - self.kernels.between(COSINE, *kernel, 0.0);
+        let squares = taps.iter().map(with_tap).chain(PARTS[1..].iter().map(with_part)).collect();
+        let with_lobes = self.with_lobes(taps[i]);
+        let products = [0, 1].map(|lobe| with_lobes[lobe] - own - self.irradiance[lobe][0] + irradiance);
+        Row { squares, products }
     }
 
     fn with_lobes(&self, tap: Tap) -> [f64; 2] {
@@ -177,14 +251,6 @@ impl<'a> Lobe<'a> {
         };
         lookups.map(one).sum()
     }
-}
-
-fn error(squares: &[Vec<f64>], products: &[f64], weights: &[f64]) -> f64 {
-    let rows = weights.iter().enumerate().map(|(i, weight)| {
-        let row: f64 = squares[i].iter().zip(weights).map(|(square, weight)| square * weight).sum();
-        weight * (row - 2.0 * products[i])
-    });
-    rows.sum()
 }
 
 /// Directions of the light with their shares of the lobes, which sum to 1: +Z is the normal, and the view in the half

@@ -101,7 +101,6 @@ fn lists_are_little_longer_than_they_have_to_be() {
     for (spot_every, most) in [(0, 1.45), (1, 2.93)] {
         let (reaching, all) = check(&lights(400, 9.0, spot_every), &camera(), UVec2::splat(512), [5.0, 60.0]);
         let ratio = all as f64 / reaching as f64;
-        println!("spot_every {spot_every}: {ratio:.3}");
         assert!(ratio < most, "{spot_every}: {ratio}");
     }
 }
