@@ -246,6 +246,7 @@ impl Tiers {
             ("rough metal", sphere(metal(0.2)), [0.013, 0.0087, 0.0085]),
             ("rougher metal", sphere(metal(0.5)), [0.0482, 0.0153, 0.0074]),
             ("dielectric", sphere(dielectric(0.6)), [0.0859, 0.0168, 0.0099]),
+            ("rough dielectric", sphere(dielectric(1.0)), [0.0374, 0.0342, 0.0319]),
         ];
         Self::new(&image, spheres)
     }
