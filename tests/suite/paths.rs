@@ -24,7 +24,11 @@ fn scene() -> Scene {
     let metal = Material { base_color: Vec4::new(0.9, 0.6, 0.3, 1.0), perceptual_roughness: 0.4, ..Default::default() };
     let mut scene = sphere_scene(metal.clone());
     scene.materials.extend([
-        Material { disney: Some(Disney { clearcoat: 1.0, ..Disney::default() }), metallic: 0.2, ..metal.clone() },
+        Material {
+            disney: Some(Disney { clearcoat: 1.0, clearcoat_gloss: 0.0, ..Disney::default() }),
+            metallic: 0.2,
+            ..metal.clone()
+        },
         Material { metallic: 0.0, double_sided: true, emissive_nits: Vec3::new(0.0, 0.1, 0.3), ..metal },
     ]);
     let places = [
@@ -93,8 +97,8 @@ fn with_one_sample_both_paths_draw_the_same() {
             let [forward, deferred] = both(&gpu, scene, &view, options);
             let (error, coverage) = difference(&deferred, &forward);
             println!("{name}, {background:?}: {error:e}, coverage {coverage:e}");
-            // Measured 4.3e-5: interpolation rounds otherwise. Margin 2.
-            assert!(error < 1e-4 && coverage == 0.0, "{name}, {background:?}: {error:e}, coverage {coverage:e}");
+            // Measured 4.0e-7: interpolation rounds otherwise. Margin 4.
+            assert!(error < 1.6e-6 && coverage == 0.0, "{name}, {background:?}: {error:e}, coverage {coverage:e}");
         }
     }
 }
@@ -112,7 +116,7 @@ fn with_four_samples_both_cover_alike_and_the_deferred_path_is_nearer_to_the_tru
     let truth = trace(&scene, &view, 64);
     let [of_forward, of_deferred] = [&forward, &deferred].map(|image| relative_rms(image, &truth));
     println!("forward {of_forward:.5}, deferred {of_deferred:.5}, coverage {coverage:e}");
-    if of_deferred > 1.01 * of_forward || coverage > 1e-6 {
+    if of_deferred > of_forward || coverage > 1e-6 {
         leave_pictures("paths", &view, &deferred, &forward);
         panic!("forward {of_forward:.5}, deferred {of_deferred:.5}, coverage {coverage:e}");
     }
