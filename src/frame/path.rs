@@ -29,10 +29,10 @@ impl RenderPath {
 /// Each draw goes once more over the part of the picture that it can be in, to find its pixels.
 const MAX_DRAWS: usize = 64;
 
-/// Pixels of the picture a triangle, below which the deferred path is faster on a software driver: measured with grids of
-/// 2 to 32768 triangles (docs/performance.md). With several samples blocks beside edges cost more.
-const SMALL_TRIANGLE_PX: f64 = 100.0;
-const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 300.0;
+/// Pixels of the picture a triangle, below which the deferred path is the faster one on a software driver, for shaders
+/// with and without textures (docs/performance.md). With several samples blocks beside edges cost more.
+const SMALL_TRIANGLE_PX: f64 = 50.0;
+const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 150.0;
 
 /// Whether the deferred path can draw these: a few opaque draws of triangles, each at one place.
 pub fn is_deferrable(drawables: &Drawables) -> bool {
@@ -106,7 +106,7 @@ mod tests {
             are_small(&drawables, &view, samples, |_| scene.meshes[0].primitives[0].indices.len() as u64 / 3)
         };
         assert!(small(512, 1) && small(512, 4) && !small(4096, 1) && !small(4096, 4));
-        assert!(!small(1400, 1) && small(1400, 4));
+        assert!(!small(1000, 1) && small(1000, 4));
     }
 
     #[test]
