@@ -7,7 +7,9 @@ mod frame_state;
 mod target;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
-use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, clip_from_origin, plan};
+use crate::frame::{
+    Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, clip_from_origin, is_worth_deferring, plan,
+};
 use crate::gpu::formats::{self, Precision};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
 use crate::math::color::linear_from_srgb;
@@ -61,7 +63,7 @@ pub enum PathChoice {
     /// Always forward: what an engine expects of a pass of its own.
     #[default]
     Forward,
-    /// Deferred where it can be and triangles are small; measured to be faster on software drivers.
+    /// Deferred where a scene is one draw of small triangles; measured to be faster on software drivers.
     Faster,
     /// Deferred wherever it can be.
     Deferred,
@@ -132,7 +134,10 @@ impl Renderer {
         let triangles = |drawable: usize| scene.draws[drawable].primitive.indices.len() as u64 / 3;
         let is_deferred = match self.path {
             PathChoice::Forward => false,
-            PathChoice::Faster => can && are_small(&scene.drawables, view, target.samples, triangles),
+            PathChoice::Faster => {
+                can && is_worth_deferring(&scene.drawables)
+                    && are_small(&scene.drawables, view, target.samples, triangles)
+            }
             PathChoice::Deferred => can,
         };
         if is_deferred { RenderPath::Deferred } else { RenderPath::Forward }
@@ -161,7 +166,12 @@ impl Renderer {
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
         let mut uploaded = GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?;
-        if self.path != PathChoice::Forward && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
+        let may_defer = match self.path {
+            PathChoice::Forward => false,
+            PathChoice::Faster => is_worth_deferring(&uploaded.drawables),
+            PathChoice::Deferred => true,
+        };
+        if may_defer && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             uploaded.pull(device, queue, scene);
         }
         Ok(uploaded)

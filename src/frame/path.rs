@@ -44,6 +44,12 @@ pub fn is_deferrable(drawables: &Drawables) -> bool {
     (1..=MAX_DRAWS).contains(&drawables.draws.len()) && drawables.draws.iter().all(fits)
 }
 
+/// Whether the deferred path pays, as far as a view has no say in it: for one draw. llvmpipe of Mesa 22.3 keeps some 2.6 MB
+/// for each further draw of such a pass and frame for good, which a picture can bear and a viewer cannot.
+pub fn is_worth_deferring(drawables: &Drawables) -> bool {
+    is_deferrable(drawables) && drawables.draws.len() == 1
+}
+
 /// Whether triangles are small enough for the deferred path to pay, over all drawables; `triangles` says how many one has.
 pub fn are_small(drawables: &Drawables, view: &View, samples: u32, triangles: impl Fn(usize) -> u64) -> bool {
     let clip = clip_from_origin(view, drawables.origin_in_world);

@@ -150,7 +150,9 @@ fn the_deferred_path_is_taken_only_where_it_can_be_and_pays() {
     blended.materials[2].alpha_mode = AlphaMode::Blend;
     let channel = specula::scene::Channel::Nan;
     let cases = [
-        (scene(), &small, PathChoice::Faster, RenderPath::Deferred),
+        (sphere_scene(Material::default()), &small, PathChoice::Faster, RenderPath::Deferred),
+        (scene(), &small, PathChoice::Faster, RenderPath::Forward),
+        (scene(), &small, PathChoice::Deferred, RenderPath::Deferred),
         (scene(), &small, PathChoice::Forward, RenderPath::Forward),
         (blended, &small, PathChoice::Deferred, RenderPath::Forward),
         (scene(), &View { channel: Some(channel), ..small.clone() }, PathChoice::Deferred, RenderPath::Forward),
@@ -159,10 +161,9 @@ fn the_deferred_path_is_taken_only_where_it_can_be_and_pays() {
         drawn(&gpu, &scene, view, options, (choice, expected));
     }
     // The same triangles are large in a large picture.
-    let scene = scene();
-    let maps = scene.environment.as_ref().map(|e| environment::bake(&e.image, &BakeOptions::default(), &Silent));
+    let scene = sphere_scene(Material::default());
     let renderer = Renderer::new(&gpu.device, &gpu.queue).with_paths(PathChoice::Faster);
-    let uploaded = renderer.upload(&gpu.device, &gpu.queue, &scene, maps.as_ref()).unwrap();
+    let uploaded = renderer.upload(&gpu.device, &gpu.queue, &scene, None).unwrap();
     let into = ForwardTarget { format: Precision::Half.hdr_format(), samples: 1 };
     assert_eq!(renderer.path(&uploaded, &front_view(128), into), RenderPath::Deferred);
     assert_eq!(renderer.path(&uploaded, &front_view(8192), into), RenderPath::Forward);
