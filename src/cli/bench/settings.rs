@@ -55,7 +55,7 @@ impl Setting {
 impl Setting {
     /// What sets its light apart: tier, and what is not as usual.
     pub(super) fn light_name(&self) -> String {
-        format!("{}{}", self.quality.name(), self.extras())
+        format!("{}{}{}", self.quality.name(), self.path_name, self.extras())
     }
 
     fn extras(&self) -> String {
