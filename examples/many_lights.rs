@@ -14,7 +14,7 @@ use specula::gpu_scene::GpuScene;
 use specula::renderer::Renderer;
 use specula::scene::framing::default_view;
 use specula::scene::light_field::{self, LightField};
-use specula::scene::{Background, Channel, Input, LightInWorld, LightKind, Scene, View};
+use specula::scene::{Background, Channel, Input, Scene, View};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -171,17 +171,7 @@ fn points(gpu: &Gpu, side_px: u32) -> Result<Vec<DVec3>, Failure> {
 
 fn mean_reaching(scene: &Scene, points: &[DVec3]) -> f64 {
     let lights = scene.lights_in_world();
-    let reaches = |light: &LightInWorld, point: DVec3| {
-        let from_light = point - light.position_in_world;
-        let is_in_cone = match light.kind {
-            LightKind::Spot { outer_cone_rad, .. } => {
-                from_light.normalize().dot(light.direction_in_world) > outer_cone_rad.cos()
-            }
-            LightKind::Point { .. } | LightKind::Directional => true,
-        };
-        is_in_cone && light.finite_range_m().is_none_or(|range_m| from_light.length() < range_m)
-    };
-    let reaching = points.iter().map(|point| lights.iter().filter(|light| reaches(light, *point)).count());
+    let reaching = points.iter().map(|point| lights.iter().filter(|light| light.reaches(*point)).count());
     reaching.sum::<usize>() as f64 / points.len() as f64
 }
 

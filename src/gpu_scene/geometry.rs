@@ -59,24 +59,26 @@ pub(crate) fn upload_primitives(
 }
 
 fn append_attributes(bytes: &mut Vec<u8>, primitive: &Primitive, features: &VertexFeatures) -> Vec<Range<u64>> {
-    let mut ranges = Vec::new();
-    let mut append = |data: &[u8]| {
+    let append = |(floats, _): (&[f32], usize)| {
         let start = bytes.len() as u64;
-        bytes.extend_from_slice(data);
-        ranges.push(start..bytes.len() as u64);
+        bytes.extend_from_slice(bytemuck::cast_slice(floats));
+        start..bytes.len() as u64
     };
-    append(bytemuck::cast_slice(&primitive.positions));
+    attribute_data(primitive, features).into_iter().map(append).collect()
+}
+
+/// The attributes that are read, in the order of [`crate::shader::attributes`], each with its floats a vertex.
+pub(super) fn attribute_data<'a>(primitive: &'a Primitive, features: &VertexFeatures) -> Vec<(&'a [f32], usize)> {
+    let mut data: Vec<(&[f32], usize)> = vec![(bytemuck::cast_slice(&primitive.positions), 3)];
     if let (true, Some(normals)) = (features.normal, &primitive.normals) {
-        append(bytemuck::cast_slice(normals));
+        data.push((bytemuck::cast_slice(normals), 3));
     }
     if let (true, Some(tangents)) = (features.tangent, &primitive.tangents) {
-        append(bytemuck::cast_slice(tangents));
+        data.push((bytemuck::cast_slice(tangents), 4));
     }
     if let (true, Some(colors)) = (features.color, &primitive.colors) {
-        append(bytemuck::cast_slice(colors));
+        data.push((bytemuck::cast_slice(colors), 4));
     }
-    for set in features.uv_sets() {
-        append(bytemuck::cast_slice(&primitive.uvs[set as usize]));
-    }
-    ranges
+    data.extend(features.uv_sets().map(|set| (bytemuck::cast_slice(&primitive.uvs[set as usize]), 2)));
+    data
 }

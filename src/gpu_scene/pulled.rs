@@ -1,12 +1,13 @@
 //! Geometry as textures, for a fragment shader that fetches the corners of its triangle by itself: a texel is four
 //! numbers in one fetch, where a buffer takes one for each.
 
+use super::geometry::attribute_data;
 use super::gpu_instance;
 use crate::frame::{Drawable, Drawables};
 use crate::gpu::formats;
 use crate::scene::{Primitive, Scene};
 use crate::shader::types::Instance;
-use crate::shader::{PULLED_ROW_TEXELS, texels_per_vertex};
+use crate::shader::{PULLED_ROW_TEXELS, VertexFeatures, texels_per_vertex};
 use std::collections::HashMap;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
@@ -44,14 +45,14 @@ impl PulledGeometry {
                 let place = PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32 };
                 let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
                 triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
-                (0..primitive.positions.len()).for_each(|i| append_vertex(&mut vertices, drawable, primitive, i));
+                append_vertices(&mut vertices, primitive, &drawable.vertex_features);
                 place
             });
             places.push(place);
         }
         Some(Self {
-            vertices: texture(device, queue, formats::PULLED_VERTICES, bytemuck::cast_slice(&vertices))?,
-            triangles: texture(device, queue, formats::PULLED_TRIANGLES, bytemuck::cast_slice(&triangles))?,
+            vertices: texture(device, queue, formats::PULLED_VERTICES, vertices)?,
+            triangles: texture(device, queue, formats::PULLED_TRIANGLES, triangles)?,
             places,
             instances: drawables.draws.iter().map(|drawable| instance(drawables, drawable)).collect(),
         })
@@ -68,34 +69,28 @@ fn instance(drawables: &Drawables, drawable: &Drawable) -> Instance {
     gpu_instance(&drawables.instances[placement as usize], drawables.origin_in_world)
 }
 
-/// The attributes in the order of [`crate::shader::attributes`].
-fn append_vertex(texels: &mut Vec<[f32; 4]>, drawable: &Drawable, primitive: &Primitive, i: usize) {
-    let features = &drawable.vertex_features;
-    let mut floats = primitive.positions[i].to_array().to_vec();
-    if let (true, Some(normals)) = (features.normal, &primitive.normals) {
-        floats.extend(normals[i].to_array());
+/// The attributes of each vertex side by side, in whole texels.
+fn append_vertices(texels: &mut Vec<[f32; 4]>, primitive: &Primitive, features: &VertexFeatures) {
+    let data = attribute_data(primitive, features);
+    let size = 4 * texels_per_vertex(features) as usize;
+    let mut floats = Vec::with_capacity(size);
+    for i in 0..primitive.positions.len() {
+        data.iter().for_each(|(attribute, count)| floats.extend_from_slice(&attribute[i * count..][..*count]));
+        floats.resize(size, 0.0);
+        texels.extend_from_slice(bytemuck::cast_slice(&floats));
+        floats.clear();
     }
-    if let (true, Some(tangents)) = (features.tangent, &primitive.tangents) {
-        floats.extend(tangents[i].to_array());
-    }
-    if let (true, Some(colors)) = (features.color, &primitive.colors) {
-        floats.extend(colors[i].to_array());
-    }
-    features.uv_sets().for_each(|set| floats.extend(primitive.uvs[set as usize][i].to_array()));
-    floats.resize(4 * texels_per_vertex(features) as usize, 0.0);
-    texels.extend(floats.chunks_exact(4).map(|c| [c[0], c[1], c[2], c[3]]));
 }
 
 /// Rows of [`PULLED_ROW_TEXELS`] texels of 16 bytes.
-fn texture(
+fn texture<T: bytemuck::Pod>(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     format: wgpu::TextureFormat,
-    texels: &[u8],
+    mut texels: Vec<[T; 4]>,
 ) -> Option<wgpu::Texture> {
-    let row = 16 * PULLED_ROW_TEXELS as usize;
-    let mut texels = texels.to_vec();
-    texels.resize(texels.len().next_multiple_of(row).max(row), 0);
+    let row = PULLED_ROW_TEXELS as usize;
+    texels.resize(texels.len().next_multiple_of(row).max(row), [T::zeroed(); 4]);
     let height = (texels.len() / row) as u32;
     let limit = device.limits().max_texture_dimension_2d;
     (height <= limit && PULLED_ROW_TEXELS <= limit).then(|| {
@@ -109,6 +104,6 @@ fn texture(
             usage: wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         };
-        device.create_texture_with_data(queue, &descriptor, TextureDataOrder::LayerMajor, &texels)
+        device.create_texture_with_data(queue, &descriptor, TextureDataOrder::LayerMajor, bytemuck::cast_slice(&texels))
     })
 }

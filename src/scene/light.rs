@@ -48,6 +48,19 @@ impl LightInWorld {
         (inverse_square(range_m) > 0.0).then_some(range_m)
     }
 
+    /// Whether a point in the world is within the light's range and, of a spot light, inside of its outer cone. A
+    /// directional light reaches everything.
+    pub fn reaches(&self, point_in_world: DVec3) -> bool {
+        let from_light = point_in_world - self.position_in_world;
+        let is_in_cone = match self.kind {
+            LightKind::Spot { outer_cone_rad, .. } => {
+                from_light.normalize().dot(self.direction_in_world) > outer_cone_rad.cos()
+            }
+            LightKind::Point { .. } | LightKind::Directional => true,
+        };
+        is_in_cone && self.finite_range_m().is_none_or(|range_m| from_light.length() < range_m)
+    }
+
     /// One over the square of [`Self::finite_range_m`], 1/m^2; 0 without.
     pub fn inverse_range_squared(&self) -> f32 {
         self.finite_range_m().map_or(0.0, inverse_square)

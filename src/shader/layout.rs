@@ -17,9 +17,6 @@ macro_rules! rust_type {
     (vec4f) => {
         [f32; 4]
     };
-    (vec4u) => {
-        [u32; 4]
-    };
     (mat3x3f) => {
         [[f32; 4]; 3]
     };

@@ -1,5 +1,5 @@
 //! WGSL for the deferred pass, which fetches vertices by itself: the same `VertexIn` and `VertexOut` as in the forward
-//! pass, read from buffers and interpolated here.
+//! pass, read from textures and interpolated here.
 
 use super::features::VertexFeatures;
 use super::interface::{Attribute, attributes, vertex_functions};

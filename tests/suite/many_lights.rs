@@ -16,19 +16,7 @@ use specula::shader::{LightList, ShaderSources};
 const CLUSTERED: &str = "lighting/punctual_clustered.wgsl";
 
 /// The loop over all lights, in the order in which clusters list them.
-const BRUTE_FORCE: &str = "\
-#import \"lighting/punctual_light.wgsl\"
-fn punctual_radiance(lobes: Lobes, position: vec3f) -> vec3f {
-    var radiance = vec3f(0.0);
-    for (var i = 0u; i < frame.light_count; i++) {
-        radiance += radiance_of_light(lobes, position, i);
-    }
-    return radiance;
-}
-fn punctual_count(position: vec3f) -> u32 {
-    return frame.light_count;
-}
-";
+const BRUTE_FORCE: &str = "lighting/punctual.wgsl";
 
 fn view(scene: &Scene, camera: Camera, size_px: UVec2) -> View {
     View { camera, background: Background::Transparent, ..default_view(scene, size_px) }
@@ -53,7 +41,8 @@ fn draw_all(gpu: &Gpu, shaders: ShaderSources, scene: &Scene, views: &[View], sa
 
 fn brute_force() -> ShaderSources {
     let mut shaders = ShaderSources::default();
-    shaders.insert(CLUSTERED, BRUTE_FORCE.into());
+    let brute_force = shaders.get(BRUTE_FORCE).unwrap().to_owned();
+    shaders.insert(CLUSTERED, brute_force);
     shaders
 }
 

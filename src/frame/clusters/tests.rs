@@ -1,8 +1,8 @@
 //! Clusters against brute force: points are drawn at random, and every light that reaches one is in its cluster's list.
 
 use super::*;
+use crate::scene::LightInWorld;
 use crate::scene::light_field::{LightField, camera};
-use crate::scene::{LightInWorld, LightKind};
 use glam::{DVec2, Mat4, Vec4};
 
 /// What `lighting/clusters.wgsl` does.
@@ -15,17 +15,6 @@ fn listed(clusters: &Clusters, point: DVec3) -> &[u32] {
     let (x, y) = (cell(at.x / w, uniform.columns), cell(at.y / w, uniform.rows));
     let cluster = ((cell(slice, uniform.slices) * uniform.rows + y) * uniform.columns + x) as usize;
     &clusters.table[clusters.table[cluster] as usize..clusters.table[cluster + 1] as usize]
-}
-
-fn reaches(light: &LightInWorld, point: DVec3) -> bool {
-    let from_light = point - light.position_in_world;
-    let is_in_cone = match light.kind {
-        LightKind::Spot { outer_cone_rad, .. } => {
-            from_light.normalize().dot(light.direction_in_world) > outer_cone_rad.cos()
-        }
-        LightKind::Point { .. } | LightKind::Directional => true,
-    };
-    is_in_cone && light.finite_range_m().is_none_or(|range_m| from_light.length() < range_m)
 }
 
 /// Uniform in [0, 1), the `i`th of a Kronecker sequence (Roberts 2018).
@@ -49,7 +38,7 @@ fn check(lights: &[LightInWorld], camera: &Camera, size_px: UVec2, depths_m: [f6
         let list = listed(&clusters, point - origin);
         assert!(list.is_sorted_by(|a, b| a < b), "{list:?}");
         for (light, index) in lights.iter().zip(5..) {
-            if reaches(light, point) {
+            if light.reaches(point) {
                 reaching += 1;
                 assert!(list.contains(&index), "{size_px}: {light:?} is not listed at {point}");
             }
