@@ -4,6 +4,7 @@ use super::key::Key;
 use crate::scene::{EnvironmentMaps, MAX_SUNS, SpecularTile, Sun};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
+use std::io::Read;
 
 /// First bytes of a file. A machine of the other byte order reads another number, and has other keys anyway.
 const MAGIC: u64 = u64::from_le_bytes(*b"speculaE");
@@ -77,25 +78,32 @@ fn stored_tile(tile: &SpecularTile) -> StoredTile {
     StoredTile { origin, size }
 }
 
-/// The maps of a file that [`encode`] has made for this key, or `None` of any other.
-pub(super) fn decode(key: &Key, file: &[u8]) -> Option<EnvironmentMaps> {
-    let mut rest = file;
-    let [header]: [Header; 1] = take(&mut rest, 1)?.try_into().ok()?;
-    if header.magic != MAGIC || header.key != key.0 || header.checksum != checksum(file) {
+/// The maps of a file of `length` bytes that [`encode`] has made for this key, or `None` of any other. The texels are read
+/// to where they stay: once more, they would be most of what a small picture takes.
+pub(super) fn decode(key: &Key, file: &mut impl Read, length: u64) -> Option<EnvironmentMaps> {
+    let mut header = Header::zeroed();
+    file.read_exact(bytemuck::bytes_of_mut(&mut header)).ok()?;
+    if header.magic != MAGIC || header.key != key.0 || length_of(&header)? != length {
+        return None;
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(bytemuck::bytes_of(&Header { checksum: [0; 32], ..header }));
+    // What the header promises lies in the file: it has that length.
+    let suns: Vec<StoredSun> = read(file, header.suns as usize, &mut hasher)?;
+    let tiles: Vec<StoredTile> = read(file, header.tiles as usize, &mut hasher)?;
+    let texels: Vec<Vec3> = read(file, texel_count(&header)?, &mut hasher)?;
+    if header.checksum != *hasher.finalize().as_bytes() {
         return None;
     }
     // From here on all is as it was written, if not by this program then by someone who can compute a checksum: what
     // would break a reader is looked at nevertheless.
-    let suns = take::<StoredSun>(&mut rest, (header.suns as usize).min(MAX_SUNS))?;
-    let tiles = take::<StoredTile>(&mut rest, header.tiles as usize)?;
-    let texels = take::<Vec3>(&mut rest, (header.atlas_width as usize).checked_mul(header.atlas_height as usize)?)?;
     let fits = |tile: &StoredTile| {
         let ends = |origin: u32, side: u32| {
             origin >= 1 && origin.checked_add(tile.size).is_some_and(|end| end < side) && tile.size > 0
         };
         ends(tile.origin[0], header.atlas_width) && ends(tile.origin[1], header.atlas_height)
     };
-    let is_whole = rest.is_empty() && !tiles.is_empty() && tiles.iter().all(fits);
+    let is_whole = suns.len() <= MAX_SUNS && !tiles.is_empty() && tiles.iter().all(fits);
     is_whole.then(|| EnvironmentMaps {
         suns: suns
             .into_iter()
@@ -113,17 +121,23 @@ pub(super) fn decode(key: &Key, file: &[u8]) -> Option<EnvironmentMaps> {
     })
 }
 
-fn checksum(file: &[u8]) -> [u8; 32] {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(&file[..CHECKSUM.start]).update(&[0; 32]).update(&file[CHECKSUM.end..]);
-    hasher.finalize().into()
+fn texel_count(header: &Header) -> Option<usize> {
+    (header.atlas_width as usize).checked_mul(header.atlas_height as usize)
 }
 
-/// The next `count` values, wherever they lie; checked for length before anything is allocated.
-fn take<T: Pod>(rest: &mut &[u8], count: usize) -> Option<Vec<T>> {
-    let (bytes, after) = rest.split_at_checked(count.checked_mul(size_of::<T>())?)?;
-    *rest = after;
-    let mut values = vec![T::zeroed(); count];
-    bytemuck::cast_slice_mut(&mut values).copy_from_slice(bytes);
+/// The bytes of the whole file.
+fn length_of(header: &Header) -> Option<u64> {
+    let bytes = |count: usize, size: usize| (count as u64).checked_mul(size as u64);
+    let suns = bytes(header.suns as usize, size_of::<StoredSun>())?;
+    let tiles = bytes(header.tiles as usize, size_of::<StoredTile>())?;
+    let texels = bytes(texel_count(header)?, size_of::<Vec3>())?;
+    (size_of::<Header>() as u64).checked_add(suns)?.checked_add(tiles)?.checked_add(texels)
+}
+
+/// The next `count` values.
+fn read<T: Pod>(file: &mut impl Read, count: usize, hasher: &mut blake3::Hasher) -> Option<Vec<T>> {
+    let mut values: Vec<T> = bytemuck::zeroed_vec(count);
+    file.read_exact(bytemuck::cast_slice_mut(&mut values)).ok()?;
+    hasher.update(bytemuck::cast_slice(&values));
     Some(values)
 }

@@ -4,7 +4,7 @@ use super::format;
 use super::key::Key;
 use crate::scene::EnvironmentMaps;
 use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -31,8 +31,8 @@ impl Store {
     /// The maps that were saved under `key`, if their file is whole.
     pub(super) fn load(&self, key: &Key) -> Option<EnvironmentMaps> {
         let path = self.path(key);
-        let file = read(&path, self.limit_bytes).ok()?;
-        let maps = format::decode(key, &file)?;
+        let (mut file, length) = open(&path, self.limit_bytes).ok()?;
+        let maps = format::decode(key, &mut file, length)?;
         // Best effort: in a folder that may only be read, nothing is evicted either.
         let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
         Some(maps)
@@ -88,15 +88,12 @@ fn entry(file: &fs::DirEntry) -> Option<Entry> {
     (is_key || is_abandoned).then(|| Entry { path: file.path(), bytes: metadata.len(), used })
 }
 
-/// A whole file of at most `limit` bytes.
-fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+/// A file of at most `limit` bytes, and its length.
+fn open(path: &Path, limit: u64) -> io::Result<(File, u64)> {
     // Looked at by name first: to open a pipe would wait for its other end.
     let metadata = fs::metadata(path)?;
     if !metadata.is_file() || metadata.len() > limit {
         return Err(io::Error::other("not a file of this cache"));
     }
-    let mut bytes = Vec::with_capacity(metadata.len() as usize);
-    // It may grow while it is read.
-    File::open(path)?.take(limit).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    Ok((File::open(path)?, metadata.len()))
 }
