@@ -74,6 +74,7 @@ impl Gpu {
             label: Some("specula"),
             required_features: adapter.features() & usable_features(options.precision),
             required_limits: limits,
+            memory_hints: memory_hints(info.device_type),
             ..Default::default()
         };
         let (device, queue) = adapter
@@ -115,9 +116,37 @@ pub fn adapters(request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
     pollster::block_on(matching_adapters(request))
 }
 
+/// Memory of a software driver is the process's own, and what is let go of a block that holds something else stays taken.
+/// There, textures and what is staged for them shall not share blocks.
+fn memory_hints(device: wgpu::DeviceType) -> wgpu::MemoryHints {
+    const BLOCK_BYTES: u64 = 8 << 20;
+    match device {
+        wgpu::DeviceType::Cpu => {
+            wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: BLOCK_BYTES..BLOCK_BYTES }
+        }
+        _ => wgpu::MemoryHints::MemoryUsage,
+    }
+}
+
 async fn choose_adapter(request: &GpuRequest) -> Result<wgpu::Adapter, GpuError> {
+    // Asking GL loads a second software driver, with which no more is possible than with the first.
+    if request.adapter.is_none() && request.backends.is_none() && !may_have_hardware() {
+        let without_gl = GpuRequest { backends: Some(wgpu::Backends::all() - wgpu::Backends::GL), adapter: None };
+        if let Ok(adapters) = matching_adapters(&without_gl).await
+            && let Some(adapter) = adapters.into_iter().next()
+        {
+            return Ok(adapter);
+        }
+    }
     let adapters = matching_adapters(request).await?;
     adapters.into_iter().next().ok_or_else(|| GpuError::NoAdapter { looked_at: "all backends".into() })
+}
+
+/// False where the system has no device that a GL driver could drive; of other systems than Linux this is not known.
+fn may_have_hardware() -> bool {
+    // Kernel drivers of all graphics cards; NVIDIA's own, WSL's, Adreno's and Mali's.
+    const DEVICES: [&str; 5] = ["/dev/dri", "/dev/nvidia0", "/dev/dxg", "/dev/kgsl-3d0", "/dev/mali0"];
+    !cfg!(target_os = "linux") || DEVICES.iter().any(|device| std::path::Path::new(device).exists())
 }
 
 async fn matching_adapters(request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
