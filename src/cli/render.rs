@@ -216,6 +216,8 @@ fn draw(
         Ok(pending)
     })?;
     let stats = pending.stats.clone();
+    // The picture is on its way; its way back needs the memory of what it was drawn into.
+    drop(target);
     let frame = watch.time("readback", || pending.wait(gpu))?;
     if let Some(folder) = &args.dump_wgsl {
         dump_wgsl(&renderer, folder)?;

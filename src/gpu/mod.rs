@@ -6,7 +6,9 @@ pub mod formats;
 mod kept;
 pub mod pipeline;
 mod readback;
+mod staging;
 
 pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, adapters, usable_features};
 pub use kept::KeptUniform;
 pub use readback::{Readback, read_buffer, read_texel, read_texture};
+pub use staging::Staging;

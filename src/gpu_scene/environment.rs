@@ -1,11 +1,13 @@
 //! An environment on the GPU: the prefiltered atlas, its uniform, and the panorama when it is seen.
 
 use super::UploadError;
-use crate::gpu::formats;
+use crate::gpu::{Staging, formats};
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile};
 use crate::shader::types::EnvironmentUniform;
 use glam::{DMat3, Vec3};
 use half::f16;
+use half::slice::HalfFloatSliceExt;
+use rayon::prelude::*;
 use std::sync::Arc;
 use wgpu::util::DeviceExt;
 
@@ -33,12 +35,12 @@ pub struct Panorama {
 impl GpuEnvironment {
     pub(crate) fn new(
         device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        staging: &mut Staging<'_>,
         environment: &Environment,
         maps: &EnvironmentMaps,
     ) -> Result<Self, UploadError> {
         let (atlas, scale) =
-            upload(device, queue, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
+            upload(device, staging, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
         let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
         let intensity = environment.intensity;
         let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
@@ -80,7 +82,7 @@ impl GpuEnvironment {
             return Ok(panorama.clone());
         }
         let EnvironmentImage { width, height, ref texels } = *self.image;
-        let (view, scale) = upload(device, queue, "panorama", width, height, texels)?;
+        let (view, scale) = upload(device, &mut Staging::new(device, queue), "panorama", width, height, texels)?;
         let panorama = Panorama { view, scale };
         self.panorama = Some(panorama.clone());
         Ok(panorama)
@@ -116,7 +118,7 @@ pub(crate) fn columns(matrix: DMat3) -> [[f32; 4]; 3] {
 
 fn upload(
     device: &wgpu::Device,
-    queue: &wgpu::Queue,
+    staging: &mut Staging<'_>,
     label: &str,
     width: u32,
     height: u32,
@@ -126,24 +128,35 @@ fn upload(
     if width.max(height) > allowed {
         return Err(UploadError::EnvironmentTooLarge { width, height, allowed });
     }
-    let peak = texels.iter().map(|texel| texel.max_element()).fold(0.0, f32::max);
+    let peak = texels.par_iter().map(|texel| texel.max_element()).reduce(|| 0.0, f32::max);
     let scale = (peak / HALF_MAX).max(1.0);
-    let halves: Vec<[f16; 4]> =
-        texels.iter().map(|texel| (*texel / scale).extend(1.0).to_array().map(f16::from_f32)).collect();
-    let texture = device.create_texture_with_data(
-        queue,
-        &wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: formats::ENVIRONMENT,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        },
-        wgpu::util::TextureDataOrder::LayerMajor,
-        bytemuck::cast_slice(&halves),
-    );
+    let halves = halves(texels, scale);
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: formats::ENVIRONMENT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    staging.write(&texture, 0, bytemuck::cast_slice(&halves));
     Ok((texture.create_view(&Default::default()), scale))
+}
+
+/// Radiance over `scale`, with a fourth channel of 1.
+fn halves(texels: &[Vec3], scale: f32) -> Vec<[f16; 4]> {
+    // So many at a time fit in a core's cache, as floats too.
+    const TEXELS: usize = 1024;
+    let mut halves: Vec<[f16; 4]> = bytemuck::zeroed_vec(texels.len());
+    halves.par_chunks_mut(TEXELS).zip(texels.par_chunks(TEXELS)).for_each(|(out, texels)| {
+        let mut floats = [[0.0_f32; 4]; TEXELS];
+        for (float, texel) in floats.iter_mut().zip(texels) {
+            *float = (*texel / scale).extend(1.0).to_array();
+        }
+        let floats: &[f32] = bytemuck::cast_slice(&floats[..texels.len()]);
+        bytemuck::cast_slice_mut::<_, f16>(out).convert_from_f32_slice(floats);
+    });
+    halves
 }

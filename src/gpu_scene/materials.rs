@@ -4,6 +4,7 @@ use super::entry;
 use super::tables::Table;
 use super::textures::{TextureCache, TextureLevels, textures_of};
 use crate::frame::Drawables;
+use crate::gpu::Staging;
 use crate::gpu::bindings::material_layout;
 use crate::scene::{AlphaMode, Disney, Material, MetalFresnel, Scene, TextureSlot};
 use crate::shader::{
@@ -24,8 +25,8 @@ pub(crate) struct Materials {
 
 /// Uploads what the draws read. Returns the groups, the bytes of all textures, and warnings.
 pub(crate) fn upload(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    staging: &mut Staging<'_>,
     scene: &Scene,
     drawables: &Drawables,
     levels: TextureLevels,
@@ -41,7 +42,7 @@ pub(crate) fn upload(
         let layout = materials.layouts.entry(key.1).or_insert_with(|| material_layout(device, &key.1));
         let group = bound
             .entry(key)
-            .or_insert_with(|| bind(device, queue, scene, (&mut cache, disney_table.as_ref()), layout, key));
+            .or_insert_with(|| bind(device, staging, scene, (&mut cache, disney_table.as_ref()), layout, key));
         materials.groups.push(group.clone());
     }
     (materials, cache.bytes, cache.warnings)
@@ -49,7 +50,7 @@ pub(crate) fn upload(
 
 fn bind(
     device: &wgpu::Device,
-    queue: &wgpu::Queue,
+    staging: &mut Staging<'_>,
     scene: &Scene,
     (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
@@ -64,7 +65,7 @@ fn bind(
         .map(|sampler| cache.sampler(device, sampler))
         .collect();
     let textures = textures_of(scene, material, &features).into_iter();
-    let views: Vec<wgpu::TextureView> = textures.map(|key| cache.view(device, queue, scene, key)).collect();
+    let views: Vec<wgpu::TextureView> = textures.map(|key| cache.view(device, staging, scene, key)).collect();
     let mut entries = vec![entry(MATERIAL_UNIFORM_BINDING, uniform.as_entire_binding())];
     for (index, sampler) in samplers.iter().enumerate() {
         let binding = MATERIAL_SAMPLER_BINDING + index as u32;

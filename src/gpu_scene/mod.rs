@@ -10,6 +10,7 @@ mod tables;
 mod textures;
 
 use crate::frame::{Drawables, PlacedInstance, is_deferrable};
+use crate::gpu::Staging;
 use crate::gpu::bindings::{self, frame_layout};
 use crate::scene::{EnvironmentMaps, Scene};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
@@ -105,14 +106,18 @@ impl GpuScene {
         features.suns = features.environment && maps.is_some_and(|maps| !maps.suns.is_empty());
         let drawables = Drawables::new(scene, features);
         let origin_in_world = drawables.origin_in_world;
+        let mut staging = Staging::new(device, queue);
         let geometry = upload_primitives(device, scene, &drawables)?;
         let (materials, texture_bytes, warnings) =
-            materials::upload(device, queue, scene, &drawables, levels, disney_table);
+            materials::upload((device, queue), &mut staging, scene, &drawables, levels, disney_table);
         let environment = match (features.environment, &scene.environment, maps) {
-            (true, Some(environment), Some(maps)) => Some(GpuEnvironment::new(device, queue, environment, maps)?),
+            (true, Some(environment), Some(maps)) => {
+                Some(GpuEnvironment::new(device, &mut staging, environment, maps)?)
+            }
             (true, ..) => return Err(UploadError::MissingMaps),
             (false, ..) => None,
         };
+        staging.finish();
         let lights = if features.punctual {
             Some(GpuLights::new(device, &scene.lights_in_world(), origin_in_world, features.light_list)?)
         } else {

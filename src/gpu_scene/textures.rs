@@ -2,7 +2,7 @@
 
 use super::mips::{self, Role};
 use crate::frame::Drawables;
-use crate::gpu::formats;
+use crate::gpu::{Staging, formats};
 use crate::scene::{AlphaMode, Image, Material, Pixels, Sampler, Scene, TextureSlot, Wrap};
 use crate::shader::{MaterialFeatures, SceneFeatures};
 use rayon::prelude::*;
@@ -70,7 +70,7 @@ impl TextureCache {
     pub(super) fn view(
         &mut self,
         device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        staging: &mut Staging<'_>,
         scene: &Scene,
         key: TextureKey,
     ) -> wgpu::TextureView {
@@ -87,9 +87,7 @@ impl TextureCache {
         }
         let levels = self.levels.levels.remove(&key);
         let levels = levels.unwrap_or_else(|| mips::chain(image, role, mipmapped, max_side));
-        let texture = upload(device, queue, image, role, &levels);
-        // What is on its way is in memory once more, until the device has it and a later submission finds that.
-        queue.submit([]);
+        let texture = upload(device, staging, image, role, levels);
         self.bytes += (0..texture.mip_level_count())
             .map(|level| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1)))
             .sum::<u64>()
@@ -128,12 +126,13 @@ fn descriptor(sampler: Sampler) -> wgpu::SamplerDescriptor<'static> {
     }
 }
 
+/// Uploads the levels, each of which is let go when it is staged.
 fn upload(
     device: &wgpu::Device,
-    queue: &wgpu::Queue,
+    staging: &mut Staging<'_>,
     image: &Image,
     role: Role,
-    levels: &[mips::Level],
+    levels: Vec<mips::Level>,
 ) -> wgpu::Texture {
     let format = match image.pixels {
         Pixels::Rgba16(_) => formats::DEEP_TEXTURE,
@@ -141,11 +140,9 @@ fn upload(
         Pixels::Rgba8(_) if role.is_srgb() => formats::COLOR_TEXTURE,
         Pixels::Rgba8(_) => formats::DATA_TEXTURE,
     };
-    let extent =
-        |level: &mips::Level| wgpu::Extent3d { width: level.width, height: level.height, depth_or_array_layers: 1 };
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: image.name.as_deref(),
-        size: extent(&levels[0]),
+        size: wgpu::Extent3d { width: levels[0].width, height: levels[0].height, depth_or_array_layers: 1 },
         mip_level_count: levels.len() as u32,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -153,14 +150,8 @@ fn upload(
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (index, level) in levels.iter().enumerate() {
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(level.bytes.len() as u32 / level.height),
-            rows_per_image: None,
-        };
-        let target = wgpu::TexelCopyTextureInfo { mip_level: index as u32, ..texture.as_image_copy() };
-        queue.write_texture(target, &level.bytes, layout, extent(level));
+    for (index, level) in levels.into_iter().enumerate() {
+        staging.write(&texture, index as u32, &level.bytes.into_codes());
     }
     texture
 }

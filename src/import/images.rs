@@ -13,6 +13,10 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::Cursor;
+use std::sync::Arc;
+use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
 
 /// What a PNG may unpack besides its pixels: rows, profiles and comments, which may be bombs as well.
 pub(super) const DECODER_BYTES: u64 = 64 << 20;
@@ -100,7 +104,11 @@ fn decode(
         "JPEG" => {
             let decoder = JpegDecoder::new(Cursor::new(bytes)).map_err(|error| broken(&error))?;
             measured(&decoder, accessors, pointer, &fault)?;
-            finish(decoder).map_err(|error| broken(&error))
+            let size = decoder.dimensions();
+            match jpeg_as_rgba(bytes, size).map_err(|error| broken(&error))? {
+                Some(rgba) => Ok((size.0, size.1, Pixels::Rgba8(Arc::new(rgba)))),
+                None => finish(decoder).map_err(|error| broken(&error)),
+            }
         }
         other => Err(fault(format!("is {other}, which is not supported"))),
     });
@@ -127,6 +135,26 @@ fn measured(
 
 fn is_deep(color: ColorType) -> bool {
     matches!(color, ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16)
+}
+
+/// A JPEG of colours or grey, decoded by what `image` decodes with, but straight to four channels: to three, and from them to
+/// four, takes twice the memory. None of other kinds.
+fn jpeg_as_rgba(bytes: &[u8], (width, height): (u32, u32)) -> Result<Option<Vec<u8>>, zune_jpeg::errors::DecodeErrors> {
+    let options = DecoderOptions::default()
+        .set_strict_mode(false)
+        .set_max_width(width as usize)
+        .set_max_height(height as usize)
+        .jpeg_set_out_colorspace(ColorSpace::RGBA);
+    let mut decoder = zune_jpeg::JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers()?;
+    let is_direct = matches!(decoder.input_colorspace(), Some(ColorSpace::YCbCr | ColorSpace::Luma));
+    let size = width as usize * height as usize * 4;
+    if !is_direct || decoder.output_buffer_size() != Some(size) {
+        return Ok(None);
+    }
+    let mut rgba = vec![0; size];
+    decoder.decode_into(&mut rgba)?;
+    Ok(Some(rgba))
 }
 
 /// Decodes to four channels, of 8 bits or of 16.

@@ -44,6 +44,7 @@ impl SrgbCodes {
     }
 
     /// The code of `linear` light, which is clamped to [0, 1].
+    #[inline]
     pub fn code(&self, linear: f32) -> u8 {
         let step = (linear * Self::STEPS as f32) as usize;
         let mut code = self.first[step.min(Self::STEPS - 1)];

@@ -89,7 +89,7 @@ mod tests {
 
     /// Two texels: black, and white of half alpha.
     fn scene(mag_linear: bool) -> Scene {
-        let pixels = Pixels::Rgba8([0, 0, 0, 255, 255, 255, 255, 127].into());
+        let pixels = Pixels::Rgba8(vec![0, 0, 0, 255, 255, 255, 255, 127].into());
         let sampler = Sampler { mag_linear, wrap_u: Wrap::ClampToEdge, ..Sampler::default() };
         Scene {
             images: vec![Image { name: None, width: 2, height: 1, pixels }],

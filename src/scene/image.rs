@@ -5,8 +5,8 @@ use std::sync::Arc;
 /// RGBA pixels, row-major from the top left, four channels each.
 #[derive(Debug, Clone)]
 pub enum Pixels {
-    Rgba8(Arc<[u8]>),
-    Rgba16(Arc<[u16]>),
+    Rgba8(Arc<Vec<u8>>),
+    Rgba16(Arc<Vec<u16>>),
 }
 
 /// A decoded picture. The values are as stored in the file: whether they are sRGB depends on the slot that uses them.
@@ -22,8 +22,8 @@ impl Image {
     /// Lets go of the texels, for whoever has made a texture of them. The size and the kind of texels stay.
     pub fn forget_texels(&mut self) {
         self.pixels = match self.pixels {
-            Pixels::Rgba8(_) => Pixels::Rgba8(Arc::new([])),
-            Pixels::Rgba16(_) => Pixels::Rgba16(Arc::new([])),
+            Pixels::Rgba8(_) => Pixels::Rgba8(Arc::default()),
+            Pixels::Rgba16(_) => Pixels::Rgba16(Arc::default()),
         };
     }
 }

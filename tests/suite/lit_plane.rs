@@ -312,7 +312,7 @@ fn textured_back(material: Material) -> Scene {
     primitive.tangents = Some(vec![Vec4::new(0.8, 0.6, 0.0, -1.0); 4]);
     primitive.colors = Some(vec![Vec4::new(0.7, 0.9, 0.5, 1.0); 4]);
     primitive.uvs = vec![vec![Vec2::ZERO; 4]];
-    let texel = |rgba: [u8; 4]| Image { name: None, width: 1, height: 1, pixels: Pixels::Rgba8(rgba.into()) };
+    let texel = |rgba: [u8; 4]| Image { name: None, width: 1, height: 1, pixels: Pixels::Rgba8(rgba.to_vec().into()) };
     scene.images = vec![texel([200, 150, 110, 180]), texel([150, 170, 230, 99])];
     scene.textures = [0, 1].map(|image| Texture { image, sampler: Sampler::default() }).into();
     let material = &mut scene.materials[0];

@@ -16,6 +16,7 @@ mod lights;
 mod lit_plane;
 mod lobe_tiers;
 mod many_lights;
+mod memory;
 mod mutants;
 mod paths;
 mod shaders;

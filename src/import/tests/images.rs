@@ -75,6 +75,22 @@ fn jpeg_is_told_by_its_content() {
 }
 
 #[test]
+fn jpeg_is_decoded_to_four_channels_as_to_three() {
+    let (width, height) = (61, 43);
+    for (color, channels) in [(ExtendedColorType::Rgb8, 3), (ExtendedColorType::L8, 1)] {
+        let wave = |i: usize| (128.0 + 120.0 * (i as f32 * 0.37 + (i / 61) as f32 * 0.11).sin()) as u8;
+        let texels: Vec<u8> = (0..width as usize * height as usize * channels).map(wave).collect();
+        for quality in [30, 95] {
+            let mut file = Vec::new();
+            let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut file, quality);
+            encoder.encode(&texels, width, height, color).unwrap();
+            let by_image = image::load_from_memory(&file).unwrap().into_rgba8().into_raw();
+            assert_eq!(rgba8(&file), by_image, "{color:?} of quality {quality}");
+        }
+    }
+}
+
+#[test]
 fn images_that_no_primitive_shows_are_not_decoded() {
     let mut asset = with_image(&png(1, 1, ExtendedColorType::L8, &[0]));
     let broken = asset.view(b"no image");

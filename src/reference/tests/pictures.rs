@@ -140,7 +140,7 @@ fn a_mirror_shows_the_environment_where_it_is() {
 #[test]
 fn normal_maps_tilt_toward_the_tangent() {
     // A texture that points toward +u everywhere; on the sphere u runs to the right, on its mirror image to the left.
-    let pixels = Pixels::Rgba8([255, 128, 128, 255].into());
+    let pixels = Pixels::Rgba8(vec![255, 128, 128, 255].into());
     let mut material = material!(metallic: 0.0, specular: 0.0);
     let texture = TextureRef { texture: 0, uv_set: 0, transform: UvTransform::IDENTITY };
     material.set_texture(TextureSlot::Normal, Some(texture));
@@ -159,7 +159,7 @@ fn normal_maps_tilt_toward_the_tangent() {
 
     // v runs down in the picture, the bitangent up (glTF: +Y of the map is up).
     scene.nodes[0].parent_from_node = DMat4::IDENTITY;
-    scene.images[0].pixels = Pixels::Rgba8([128, 255, 128, 255].into());
+    scene.images[0].pixels = Pixels::Rgba8(vec![128, 255, 128, 255].into());
     assert!(normal(&scene).y > 0.99, "{}", normal(&scene));
     scene.nodes[0].parent_from_node = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     assert!(normal(&scene).y > 0.99, "mirrored: {}", normal(&scene));

@@ -1,0 +1,88 @@
+//! What is held in memory on the way to the device, counted by wgpu's allocator.
+
+use crate::support::{add_light, gpu, sphere_scene};
+use glam::{DVec3, Vec2};
+use specula::gpu::formats::{self, Precision};
+use specula::gpu::{Gpu, Staging};
+use specula::renderer::Renderer;
+use specula::scene::{
+    Image, LightKind, Material, Pixels, Sampler, Scene, Texture, TextureRef, TextureSlot, UvTransform,
+};
+
+/// A level of 4 MiB.
+const SIDE: u32 = 1024;
+const BYTES: u64 = (SIDE * SIDE * 4) as u64;
+
+/// None where the backend does not count.
+fn allocated_bytes(gpu: &Gpu) -> Option<u64> {
+    gpu.device.generate_allocator_report().map(|report| report.total_allocated_bytes)
+}
+
+#[test]
+fn textures_are_staged_a_few_at_a_time() {
+    let gpu = gpu(Precision::Half);
+    let levels = 3 * Staging::LIMIT_BYTES / BYTES;
+    let textures: Vec<wgpu::Texture> = (0..levels).map(|_| texture(&gpu)).collect();
+    let Some(before) = allocated_bytes(&gpu) else { return println!("this backend does not count memory") };
+    let texels = vec![7; BYTES as usize];
+    let mut staging = Staging::new(&gpu.device, &gpu.queue);
+    let mut most = 0;
+    for texture in &textures {
+        staging.write(texture, 0, &texels);
+        most = allocated_bytes(&gpu).unwrap_or(u64::MAX).saturating_sub(before).max(most);
+    }
+    // At least one, or else staging is not what is counted.
+    assert!((BYTES..=Staging::LIMIT_BYTES).contains(&most), "{most} bytes were staged at a time");
+    staging.finish();
+    let after = allocated_bytes(&gpu).unwrap();
+    // What was staged before is gone too.
+    assert!(after <= before, "{after} bytes are held after {before}");
+}
+
+#[test]
+fn an_upload_leaves_nothing_but_the_scene() {
+    let gpu = gpu(Precision::Half);
+    let renderer = Renderer::new(&gpu.device, &gpu.queue);
+    let scene = five_textures();
+    gpu.queue.submit([]);
+    gpu.wait().unwrap();
+    let Some(before) = allocated_bytes(&gpu) else { return println!("this backend does not count memory") };
+    let uploaded = renderer.upload(&gpu.device, &gpu.queue, &scene, None).unwrap();
+    let held = allocated_bytes(&gpu).unwrap() - before;
+    assert!(uploaded.bytes.textures > 5 * BYTES);
+    // Textures without their alignment, and what is not counted beside them: uniforms and instances.
+    let expected = uploaded.bytes.textures + uploaded.bytes.geometry;
+    assert!((expected..expected + BYTES).contains(&held), "{held} bytes are held for {expected}");
+}
+
+fn texture(gpu: &Gpu) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: formats::DATA_TEXTURE,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// A lit sphere with a texture of its own in each of five slots.
+fn five_textures() -> Scene {
+    use TextureSlot::{BaseColor, Emissive, MetallicRoughness, Normal, Occlusion};
+    let mut material = Material { emissive_nits: glam::Vec3::ONE, ..Default::default() };
+    for (texture, slot) in [BaseColor, Emissive, MetallicRoughness, Normal, Occlusion].into_iter().enumerate() {
+        material.set_texture(slot, Some(TextureRef { texture, uv_set: 0, transform: UvTransform::IDENTITY }));
+    }
+    let mut scene = sphere_scene(material);
+    for primitive in &mut scene.meshes[0].primitives {
+        primitive.uvs = vec![vec![Vec2::ZERO; primitive.positions.len()]];
+    }
+    add_light(&mut scene, LightKind::Point { range_m: None }, 1.0, DVec3::Z * 3.0);
+    let image =
+        || Image { name: None, width: SIDE, height: SIDE, pixels: Pixels::Rgba8(vec![128; BYTES as usize].into()) };
+    scene.images = (0..5).map(|_| image()).collect();
+    scene.textures = (0..5).map(|image| Texture { image, sampler: Sampler::default() }).collect();
+    scene
+}
