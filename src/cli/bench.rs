@@ -1,6 +1,6 @@
 //! `specula bench`: what settings cost in time, and what they gain in error against the reference renderer.
 
-mod clock;
+mod frames;
 mod pareto;
 mod plot;
 mod report;
@@ -9,6 +9,7 @@ mod stage;
 mod steady;
 mod truth;
 
+use super::clock::{self, Basis, FrameTimes, median_times};
 use super::driver::DriverArgs;
 use super::error::CliError;
 use super::output;
@@ -23,8 +24,7 @@ use crate::metrics::truth::RelativeError;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::scene::{Quality, Scene, View};
-pub(super) use clock::{Basis, median_ms, process_ms};
-use clock::{FrameTimes, median_times};
+use frames::{SteadyReport, steady_frames};
 use report::{DisplayRow, Row, TermRow, TruthReport};
 pub(super) use settings::Setting;
 pub(super) use stage::{Shot, Stage};
@@ -34,7 +34,7 @@ pub(super) use truth::{Truth, TruthOptions, with_bare_textures};
 /// Draws the model with every setting that trades time for error, in turn, and compares each picture with the reference
 /// renderer's. The setting that --quality, --msaa and --precision ask for is the base of the comparison.
 #[derive(Debug, clap::Args)]
-#[command(mut_arg("size", |size| size.default_value("256x256")))]
+#[command(mut_arg("size", |size| size.default_value("256x256").default_value_if("steady", "true", "1024x1024")))]
 pub(super) struct BenchArgs {
     #[command(flatten)]
     subject: SubjectArgs,
@@ -61,6 +61,10 @@ pub(super) struct BenchArgs {
 #[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Measurement")]
 struct EffortArgs {
+    /// Draw the one setting that is asked for, and print the times of each frame: no other setting, no truth. Pictures are
+    /// 1024x1024 unless --size says otherwise.
+    #[arg(long, conflicts_with_all = ["pareto", "truth_samples", "truth_error"])]
+    steady: bool,
     /// Frames of each setting, of which the median counts.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
@@ -84,28 +88,63 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
     let (scene, warnings) = args.subject.load(&progress, &Stopwatch::default())?;
     let view = args.view.view(&scene, args.subject.has_panorama())?;
     // Float targets are among the settings.
-    let gpu = Gpu::open(&args.driver.request(), GpuOptions { precision: Precision::Float });
-    let gpu = gpu.map_err(CliError::NeedsAdapter)?;
+    let precision = if args.effort.steady { args.driver.precision() } else { Precision::Float };
+    let gpu = Gpu::open(&args.driver.request(), GpuOptions { precision }).map_err(CliError::NeedsAdapter)?;
+    if args.effort.steady {
+        let report = steady(args, &gpu, (&scene, &view), warnings, &progress);
+        progress.finish();
+        let report = report?;
+        warn(args, &report.warnings);
+        return write(args, &report::json(&report)?, || report.text());
+    }
     let report = measure(args, &gpu, &scene, &view, &progress);
     progress.finish();
     let mut report = report?;
     report.warnings.splice(0..0, warnings);
-    if !args.quiet {
-        report.warnings.iter().for_each(|warning| eprintln!("specula: warning: {warning}"));
+    warn(args, &report.warnings);
+    if let Some(path) = &args.pareto {
+        output::write(path, plot::svg(&report).as_bytes())?;
     }
-    write(args, &report)
+    write(args, &report::json(&report)?, || report.text())
 }
 
-fn write(args: &BenchArgs, report: &report::Report) -> Result<(), CliError> {
-    let json = report.json()?;
+fn warn(args: &BenchArgs, warnings: &[String]) {
+    if !args.quiet {
+        warnings.iter().for_each(|warning| eprintln!("specula: warning: {warning}"));
+    }
+}
+
+/// Writes a report to where it is wanted.
+fn write(args: &BenchArgs, json: &str, text: impl FnOnce() -> String) -> Result<(), CliError> {
     if let Some(path) = &args.stats {
         output::write(path, json.as_bytes())?;
     }
-    if let Some(path) = &args.pareto {
-        output::write(path, plot::svg(report).as_bytes())?;
-    }
-    let text = if args.json { json } else { report.text() };
+    let text = if args.json { json.to_owned() } else { text() };
     output::write(Path::new("-"), text.as_bytes())
+}
+
+/// The base setting alone.
+fn steady(
+    args: &BenchArgs,
+    gpu: &Gpu,
+    (scene, view): (&Scene, &View),
+    warnings: Vec<String>,
+    progress: &dyn Progress,
+) -> Result<SteadyReport, CliError> {
+    let basis = args.effort.clock.unwrap_or_else(|| Basis::suiting(gpu));
+    let setting = Setting::new(view.quality, args.driver.capture_options(), args.driver.paths_on(gpu));
+    let mut stage = Stage::new(gpu, scene, args.subject.cache());
+    let (steady, _) = steady_frames(&mut stage, (setting, view), (args.effort.frames, basis), progress)?;
+    Ok(SteadyReport {
+        schema: "specula-steady/1",
+        specula: env!("CARGO_PKG_VERSION"),
+        model: args.subject.model.display().to_string(),
+        environment: args.subject.environment_name().to_owned(),
+        adapter: AdapterStats::of(gpu),
+        basis,
+        steady,
+        warnings,
+    })
 }
 
 fn measure(
@@ -115,7 +154,7 @@ fn measure(
     view: &View,
     progress: &dyn Progress,
 ) -> Result<report::Report, CliError> {
-    let EffortArgs { frames, clock, truth_samples, truth_error } = args.effort;
+    let EffortArgs { frames, clock, truth_samples, truth_error, .. } = args.effort;
     let cache = args.subject.cache();
     let basis = clock.unwrap_or_else(|| Basis::suiting(gpu));
     let capture = args.driver.capture_options();
@@ -124,9 +163,7 @@ fn measure(
     let (base_shot, others, warnings) = shots(&mut stage, base, (scene, view), progress)?;
     let shots: Vec<Shot> = std::iter::once(base_shot).chain(others).collect();
     let times = stage.measure(&shots, frames, progress)?;
-    if times.iter().flatten().any(|frame| basis.of(frame).is_none()) {
-        return Err(CliError::Usage(format!("{} is not known on this machine; take another --clock", basis.name())));
-    }
+    basis.check(times.iter().flatten())?;
     let options = TruthOptions { samples: truth_samples, relative_error: truth_error, progress };
     let picture = Truth::of_picture(scene, view, &options);
     let bare = with_bare_textures(scene);

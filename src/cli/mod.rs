@@ -3,6 +3,7 @@
 mod bake;
 mod bench;
 mod camera;
+mod clock;
 mod color;
 mod compare;
 mod debug_view;

@@ -1,6 +1,6 @@
 //! What a render did, for `--stats` and `--json`.
 
-use super::bench::process_ms;
+use super::clock::process_ms;
 use super::tier::TierStats;
 use crate::frame::Culled;
 use crate::gpu::Gpu;

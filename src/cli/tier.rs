@@ -1,6 +1,7 @@
 //! `--max-error` and `--max-ms`: the tier that a scene and a view ask for, measured on the spot.
 
-use super::bench::{Basis, Light, Setting, Stage, Truth, TruthOptions, median_ms, with_bare_textures};
+use super::bench::{Light, Setting, Stage, Truth, TruthOptions, with_bare_textures};
+use super::clock::{Basis, median_ms};
 use super::environment::CacheArgs;
 use super::error::CliError;
 use super::truth::parse_error;

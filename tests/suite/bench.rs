@@ -52,9 +52,32 @@ fn settings_are_measured_reported_and_drawn() {
 }
 
 #[test]
+fn steady_frames_are_timed_one_by_one() {
+    let arguments = ["bench", SPHERES, "--steady", "--frames", "3", "--size", "48x24", "--quiet"];
+    let output = specula(&[&arguments[..], &["--json"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&report["schema"], &report["size_px"]), (&"specula-steady/1".into(), &serde_json::json!([48, 24])));
+    assert_eq!((&report["setting"], &report["msaa"]), (&"standard, 4x MSAA".into(), &4.into()));
+    assert!(report["draws"].as_u64().unwrap() > 1 && report["triangles"].as_u64().unwrap() > 1000, "{report}");
+    let frames = report["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 3);
+    for time in ["wall_ms", "cpu_ms"] {
+        let mut times: Vec<f64> = frames.iter().filter_map(|frame| frame[time].as_f64()).collect();
+        assert!(times.len() == 3 && times.iter().all(|ms| *ms > 0.0 && ms.is_finite()), "{report}");
+        times.sort_by(f64::total_cmp);
+        assert_eq!(report["median"][time].as_f64(), Some(times[1]), "{report}");
+    }
+    let table = String::from_utf8(specula(&arguments).stdout).unwrap();
+    assert!(table.starts_with("| a frame, ms") && table.contains("3 frames after 4 others"), "{table}");
+}
+
+#[test]
 fn benches_that_make_no_sense_say_so() {
     assert_fails(&["bench", SPHERES, "--renderer", "reference"], 2, "leave out --renderer");
     assert_fails(&["bench", SPHERES, "--truth-samples", "4"], 2, "--truth-samples");
+    assert_fails(&["bench", SPHERES, "--steady", "--pareto", "a.svg"], 2, "--pareto");
     assert_fails(&["bench", SPHERES, "--frames", "0"], 2, "--frames");
     assert_fails(&["bench", "no/such.glb"], 2, "no/such.glb");
     assert_fails(&["bench", SPHERES, "--adapter", "no such adapter"], 3, "no such adapter");

@@ -1,8 +1,8 @@
 //! What was measured, as tables and as JSON.
 
-use super::clock::{Basis, FrameTimes};
 use super::pareto::front;
 use super::settings::Setting;
+use crate::cli::clock::{Basis, FrameTimes};
 use crate::cli::error::CliError;
 use crate::cli::stats::AdapterStats;
 use crate::gpu::formats::Precision;
@@ -42,6 +42,19 @@ pub(super) fn percent(share: f64) -> String {
     let value = 100.0 * share;
     let digits = (2.0 - value.abs().max(1e-4).log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.digits$} %")
+}
+
+/// As `--precision` has it.
+pub(super) fn precision_name(precision: Precision) -> &'static str {
+    match precision {
+        Precision::Half => "half",
+        Precision::Float => "float",
+    }
+}
+
+/// Milliseconds, where they are known.
+pub(super) fn time_text(ms: Option<f64>) -> String {
+    ms.map_or_else(|| "-".into(), |ms| format!("{ms:.2}"))
 }
 
 #[derive(Debug, Serialize)]
@@ -88,10 +101,7 @@ impl Row {
             quality: setting.quality.name(),
             msaa: setting.msaa,
             supersampling: setting.supersampling,
-            precision: match setting.precision {
-                Precision::Half => "half",
-                Precision::Float => "float",
-            },
+            precision: precision_name(setting.precision),
             prefilter_side: setting.prefilter_side,
             path: setting.path.name(),
             light_name: setting.light_name(),
@@ -224,23 +234,17 @@ impl Report {
         }
     }
 
-    pub(super) fn json(&self) -> Result<String, CliError> {
-        let json = serde_json::to_string_pretty(self).map_err(|error| CliError::Usage(error.to_string()))?;
-        Ok(json + "\n")
-    }
-
     /// Markdown that reads well as it is.
     pub(super) fn text(&self) -> String {
         let mut text = String::new();
-        let time = |ms: Option<f64>| ms.map_or_else(|| "-".into(), |ms| format!("{ms:.2}"));
         let rows = self.settings.iter().enumerate().map(|(index, row)| {
             let mark = |on: bool| if on { "*" } else { "" };
             let base = if index == 0 { " (base)" } else { "" };
             vec![
                 format!("{}{base}", row.name),
-                time(Some(row.times.wall_ms)),
-                time(row.times.cpu_ms),
-                time(row.times.gpu_ms),
+                time_text(Some(row.times.wall_ms)),
+                time_text(row.times.cpu_ms),
+                time_text(row.times.gpu_ms),
                 format!("{:.2}", row.ratio),
                 row.picture_error.text(),
                 mark(row.is_on_picture_front).into(),
@@ -295,8 +299,14 @@ fn mark_fronts(rows: &mut [Row]) {
     }
 }
 
+/// A report as it is printed and written.
+pub(super) fn json(report: &impl Serialize) -> Result<String, CliError> {
+    let json = serde_json::to_string_pretty(report).map_err(|error| CliError::Usage(error.to_string()))?;
+    Ok(json + "\n")
+}
+
 /// A table whose columns are as wide as their widest cell.
-fn table(text: &mut String, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
+pub(super) fn table(text: &mut String, head: &[&str], rows: impl Iterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.collect();
     let head: Vec<String> = head.iter().map(|name| (*name).to_owned()).collect();
     let cells = |column: usize| rows.iter().chain([&head]).filter_map(move |row| row.get(column));

@@ -1,20 +1,20 @@
 //! A scene on the device, once for every prefiltered environment that some setting wants.
 
-use super::clock::{FrameTimes, Timestamps, time_frame};
 use super::settings::Setting;
 use crate::bake::environment::BakeOptions;
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame, Wanted, record, submit};
+use crate::cli::clock::{FrameTimes, Timestamps, time_frame};
 use crate::cli::environment::{CacheArgs, bake_with};
 use crate::cli::error::CliError;
 use crate::gpu::Gpu;
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
-use crate::renderer::{PathChoice, Renderer};
+use crate::renderer::{FrameStats, PathChoice, Renderer};
 use crate::scene::{Background, RadianceImage, Scene, Term, View};
 use glam::Vec4;
 
 /// Frames of each setting that are drawn and forgotten: the first compiles shaders.
-const WARM_UP_FRAMES: u32 = 3;
+pub(super) const WARM_UP_FRAMES: u32 = 3;
 
 /// Whether suns are parted from the environment, the side of its prefiltered maps, and whether only the forward path is
 /// wanted.
@@ -73,6 +73,13 @@ impl<'a> Stage<'a> {
         Ok(self.renderer.upload(&self.gpu.device, &self.gpu.queue, self.scene, maps.as_ref())?)
     }
 
+    /// Draws one frame and says what it consists of.
+    pub(super) fn draw(&mut self, shot: &Shot) -> Result<FrameStats, CaptureError> {
+        let mut drawn = FrameStats::default();
+        self.frame(shot, &mut drawn)?;
+        Ok(drawn)
+    }
+
     /// Draws every shot `frames` times, all in turn, forth and back, so that whatever disturbs the machine falls on all
     /// alike. Returns the times by shot.
     pub(in crate::cli) fn measure(
@@ -89,7 +96,7 @@ impl<'a> Stage<'a> {
                 order.reverse();
             }
             for index in order {
-                let frame = self.frame(&shots[index])?;
+                let frame = self.frame(&shots[index], &mut FrameStats::default())?;
                 if round >= WARM_UP_FRAMES {
                     times[index].push(frame);
                 }
@@ -99,12 +106,13 @@ impl<'a> Stage<'a> {
         Ok(times)
     }
 
-    fn frame(&mut self, shot: &Shot) -> Result<FrameTimes, CaptureError> {
+    fn frame(&mut self, shot: &Shot, drawn: &mut FrameStats) -> Result<FrameTimes, CaptureError> {
         let Self { gpu, renderer, timestamps, uploaded, .. } = self;
         let (_, scene) = &mut uploaded[shot.scene];
         renderer.set_paths(shot.setting.path);
         time_frame(gpu, timestamps.as_ref(), |encoder| {
-            record(gpu, renderer, encoder, scene, &shot.view, &shot.target, true).map(|_| ())
+            *drawn = record(gpu, renderer, encoder, scene, &shot.view, &shot.target, true)?;
+            Ok(())
         })
     }
 

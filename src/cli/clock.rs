@@ -1,5 +1,6 @@
 //! How long a frame takes: on the wall, of the processors, and by the device's own clock.
 
+use super::error::CliError;
 use crate::capture::CaptureError;
 use crate::gpu::{Gpu, read_buffer};
 use serde::Serialize;
@@ -7,19 +8,19 @@ use std::time::Instant;
 
 /// The times of one frame, or their medians, ms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub(in crate::cli) struct FrameTimes {
+pub(super) struct FrameTimes {
     /// From the start of recording until the device is done.
-    pub(in crate::cli) wall_ms: f64,
+    pub(super) wall_ms: f64,
     /// Of all threads of the process, a software driver's included. None where the system does not tell.
-    pub(in crate::cli) cpu_ms: Option<f64>,
+    pub(super) cpu_ms: Option<f64>,
     /// Between the first and the last command of the frame. None where the device has no timestamps.
-    pub(in crate::cli) gpu_ms: Option<f64>,
+    pub(super) gpu_ms: Option<f64>,
 }
 
 /// Which of the times settings are compared by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(in crate::cli) enum Basis {
+pub(super) enum Basis {
     Wall,
     /// A software driver draws on the processors, and there other programs do not count.
     Cpu,
@@ -28,7 +29,7 @@ pub(in crate::cli) enum Basis {
 
 impl Basis {
     /// The time that says most on a device.
-    pub(in crate::cli) fn suiting(gpu: &Gpu) -> Self {
+    pub(super) fn suiting(gpu: &Gpu) -> Self {
         let is_software = gpu.info.device_type == wgpu::DeviceType::Cpu;
         match (is_software, process_ms().is_some(), Timestamps::are_there(gpu)) {
             (true, true, _) => Self::Cpu,
@@ -46,8 +47,14 @@ impl Basis {
         }
     }
 
+    /// Fails where some frame has no such time.
+    pub(super) fn check<'f>(self, mut frames: impl Iterator<Item = &'f FrameTimes>) -> Result<(), CliError> {
+        let unknown = || CliError::Usage(format!("{} is not known on this machine; take another --clock", self.name()));
+        if frames.all(|frame| self.of(frame).is_some()) { Ok(()) } else { Err(unknown()) }
+    }
+
     /// The time in question, where it is known.
-    pub(in crate::cli) fn of(self, times: &FrameTimes) -> Option<f64> {
+    pub(super) fn of(self, times: &FrameTimes) -> Option<f64> {
         match self {
             Self::Wall => Some(times.wall_ms),
             Self::Cpu => times.cpu_ms,
@@ -57,7 +64,7 @@ impl Basis {
 }
 
 /// Processor time of this process, ms.
-pub(in crate::cli) fn process_ms() -> Option<f64> {
+pub(super) fn process_ms() -> Option<f64> {
     #[cfg(unix)]
     {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
@@ -143,7 +150,7 @@ pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// The median of one of the times; `None` of no frames, or where it is not known.
-pub(in crate::cli) fn median_ms(frames: &[FrameTimes], basis: Basis) -> Option<f64> {
+pub(super) fn median_ms(frames: &[FrameTimes], basis: Basis) -> Option<f64> {
     median(frames.iter().filter_map(|frame| basis.of(frame)))
 }
 
