@@ -12,17 +12,20 @@ mod truth;
 use super::clock::{self, Basis, FrameTimes, median_times};
 use super::driver::DriverArgs;
 use super::error::CliError;
+use super::measure::{Floor, Rates};
 use super::output;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, Stopwatch};
 use super::subject::SubjectArgs;
 use super::truth::parse_error;
 use super::view::ViewArgs;
+use crate::capture::CaptureError;
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::metrics::truth::RelativeError;
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
+use crate::renderer::RenderError;
 use crate::scene::{Quality, Scene, View};
 use frames::{SteadyReport, steady_frames};
 use report::{DisplayRow, Row, TermRow, TruthReport};
@@ -65,6 +68,9 @@ struct EffortArgs {
     /// 1024x1024 unless --size says otherwise.
     #[arg(long, conflicts_with_all = ["pareto", "truth_samples", "truth_error"])]
     steady: bool,
+    /// Do not measure what the device does at best, and leave out the floor of the frame.
+    #[arg(long)]
+    no_floor: bool,
     /// Frames of each setting, of which the median counts.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
@@ -134,7 +140,8 @@ fn steady(
     let basis = args.effort.clock.unwrap_or_else(|| Basis::suiting(gpu));
     let setting = Setting::new(view.quality, args.driver.capture_options(), args.driver.paths_on(gpu));
     let mut stage = Stage::new(gpu, scene, args.subject.cache());
-    let (steady, _) = steady_frames(&mut stage, (setting, view), (args.effort.frames, basis), progress)?;
+    let (steady, shot) = steady_frames(&mut stage, (setting, view), (args.effort.frames, basis), progress)?;
+    let floor = floor_of(args, gpu, (&stage, &shot), (basis, &steady.median), progress)?;
     Ok(SteadyReport {
         schema: "specula-steady/1",
         specula: env!("CARGO_PKG_VERSION"),
@@ -143,8 +150,25 @@ fn steady(
         adapter: AdapterStats::of(gpu),
         basis,
         steady,
+        floor,
         warnings,
     })
+}
+
+/// The floor of a shot whose frames take `median`, unless it is not wanted.
+fn floor_of(
+    args: &BenchArgs,
+    gpu: &Gpu,
+    (stage, shot): (&Stage<'_>, &Shot),
+    (basis, median): (Basis, &FrameTimes),
+    progress: &dyn Progress,
+) -> Result<Option<Floor>, CliError> {
+    if args.effort.no_floor {
+        return Ok(None);
+    }
+    let of = stage.floor_of(shot);
+    let rates = Rates::measure(gpu, basis, &of.fills(), progress)?;
+    Ok(of.floor(&rates, median).map_err(|error| CaptureError::from(RenderError::from(error)))?)
 }
 
 fn measure(
@@ -164,6 +188,9 @@ fn measure(
     let shots: Vec<Shot> = std::iter::once(base_shot).chain(others).collect();
     let times = stage.measure(&shots, frames, progress)?;
     basis.check(times.iter().flatten())?;
+    let median = times.first().and_then(|frames| median_times(frames));
+    let floor =
+        median.map(|median| floor_of(args, gpu, (&stage, &shots[0]), (basis, &median), progress)).transpose()?;
     let options = TruthOptions { samples: truth_samples, relative_error: truth_error, progress };
     let picture = Truth::of_picture(scene, view, &options);
     let bare = with_bare_textures(scene);
@@ -176,6 +203,7 @@ fn measure(
         size_px: view.size_px.to_array(),
         frames,
         basis,
+        floor: floor.flatten(),
         picture_truth: TruthReport::new(picture.samples, &picture.error(&stage.radiance(&shots[0], None)?)),
         shading_truth: TruthReport::new(light.truth.samples, &light.error(base, progress)?),
         terms: light.terms(base, scene.lit_environment().is_some(), progress)?,

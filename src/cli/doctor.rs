@@ -1,10 +1,13 @@
 //! `specula doctor`: which adapters there are, and what of Specula works on the one that would be taken.
 
+use super::clock::Basis;
 use super::driver::DriverArgs;
 use super::error::CliError;
+use super::measure::{Fill, Rates, RatesReport};
 use super::output;
+use super::progress::StderrProgress;
 use crate::gpu::formats::{self, Precision};
-use crate::gpu::{GpuError, adapters};
+use crate::gpu::{Gpu, GpuError, GpuOptions, adapters};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
@@ -16,6 +19,10 @@ use std::path::Path;
 pub(super) struct DoctorArgs {
     #[command(flatten)]
     driver: DriverArgs,
+    /// Measure what the adapter does at best, in some ten seconds: fills of targets, lookups in textures, arithmetic. Of
+    /// these `specula bench` makes the floor of a frame.
+    #[arg(long)]
+    measure: bool,
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -32,6 +39,9 @@ struct Report {
     /// Of the first.
     limits: Vec<Limit>,
     findings: Vec<Finding>,
+    /// Of the first, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    measured: Option<RatesReport>,
 }
 
 #[derive(Debug, Serialize)]
@@ -67,6 +77,7 @@ pub(super) fn run(args: &DoctorArgs) -> Result<(), CliError> {
         adapters: found.iter().map(|adapter| describe(&adapter.get_info())).collect(),
         limits: limits(&taken.limits()),
         findings: findings(taken),
+        measured: args.measure.then(|| measured(args)).transpose()?,
     };
     let text = if args.json { json(&report)? } else { report.text() };
     output::write(Path::new("-"), text.as_bytes())?;
@@ -75,6 +86,15 @@ pub(super) fn run(args: &DoctorArgs) -> Result<(), CliError> {
         1 => Err(CliError::CheckFailed("one thing works less well on this adapter".into())),
         count => Err(CliError::CheckFailed(format!("{count} things work less well on this adapter"))),
     }
+}
+
+/// On the adapter that is taken.
+fn measured(args: &DoctorArgs) -> Result<RatesReport, CliError> {
+    let gpu = Gpu::open(&args.driver.request(), GpuOptions::default()).map_err(CliError::NeedsAdapter)?;
+    let progress = StderrProgress::new(false);
+    let rates = Rates::measure(&gpu, Basis::suiting(&gpu), &Fill::ALL, &progress);
+    progress.finish();
+    Ok(rates?.report())
 }
 
 fn json(report: &Report) -> Result<String, CliError> {
@@ -162,6 +182,10 @@ impl Report {
         for Finding { uses, there, without } in &self.findings {
             let _ = if *there { writeln!(text, "  yes  {uses}") } else { writeln!(text, "  NO   {uses}: {without}") };
         }
+        if let Some(measured) = &self.measured {
+            text.push('\n');
+            text.push_str(&measured.text());
+        }
         text
     }
 }
@@ -179,6 +203,7 @@ mod tests {
             adapters: Vec::new(),
             limits: limits(&wgpu::Limits::default()),
             findings: vec![finding(true), finding(false)],
+            measured: None,
         };
         let text = report.text();
         assert!(text.contains("yes  timestamps\n") && text.contains("NO   timestamps: no clock\n"), "{text}");

@@ -14,6 +14,7 @@ mod error;
 mod furnace;
 mod inspect;
 mod light;
+mod measure;
 mod output;
 mod overrides;
 mod parallel;

@@ -79,6 +79,11 @@ pub fn plan(drawables: &Drawables, scene: SceneFeatures, view: &View, options: P
     plan
 }
 
+/// What the shader of a drawable does in a view.
+pub fn forward_features(scene: SceneFeatures, view: &View, drawable: &Drawable) -> ForwardFeatures {
+    ForwardFeaturesOfView::new(scene, view).key(drawable).features
+}
+
 /// Plans frame after frame of one scene, without allocating once it has seen the largest.
 #[derive(Debug, Default)]
 pub struct Planner {

@@ -43,6 +43,7 @@ fn settings_are_measured_reported_and_drawn() {
     assert!(light_of("split-sum") > light_of("standard"), "{report}");
     let terms = report["terms"].as_array().unwrap();
     assert_eq!(terms.iter().map(|row| row["quality"].as_str().unwrap()).collect::<Vec<_>>(), TIERS);
+    assert!(report["floor"]["ms"].as_f64().unwrap() > 0.0, "{report}");
     // The lamp and the studio, diffuse and specular.
     assert_eq!(terms[0]["errors"].as_array().unwrap().len(), 4);
 
@@ -52,8 +53,25 @@ fn settings_are_measured_reported_and_drawn() {
 }
 
 #[test]
+fn a_frame_is_compared_with_what_the_device_does_at_best() {
+    let arguments = ["bench", SPHERES, "--steady", "--frames", "2", "--size", "64x64", "--json", "--quiet"];
+    let output = specula(&arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let floor = |name: &str| report["floor"][name].as_f64().unwrap();
+    assert_eq!(floor("pixels"), 4096.0);
+    assert!((0.1..0.9).contains(&floor("covered")), "{report}");
+    // The table of the lobes and of their taps, two taps of two levels, and irradiance.
+    assert!(floor("taps_a_covered_pixel") >= 9.0 && floor("multiply_adds_a_covered_pixel") > 50.0, "{report}");
+    assert!(floor("fill_ms") > 0.0 && floor("taps_ms") > 0.0 && floor("arithmetic_ms") > 0.0, "{report}");
+    let median = report["median"][format!("{}_ms", report["basis"].as_str().unwrap())].as_f64().unwrap();
+    assert!((floor("ratio") * floor("ms") / median - 1.0).abs() < 1e-9, "{report}");
+    assert!(floor("ratio_to_fill_and_taps") > floor("ratio"), "{report}");
+}
+
+#[test]
 fn steady_frames_are_timed_one_by_one() {
-    let arguments = ["bench", SPHERES, "--steady", "--frames", "3", "--size", "48x24", "--quiet"];
+    let arguments = ["bench", SPHERES, "--steady", "--frames", "3", "--size", "48x24", "--no-floor", "--quiet"];
     let output = specula(&[&arguments[..], &["--json"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     assert_eq!(stderr(&output), "");
@@ -61,6 +79,7 @@ fn steady_frames_are_timed_one_by_one() {
     assert_eq!((&report["schema"], &report["size_px"]), (&"specula-steady/1".into(), &serde_json::json!([48, 24])));
     assert_eq!((&report["setting"], &report["msaa"]), (&"standard, 4x MSAA".into(), &4.into()));
     assert!(report["draws"].as_u64().unwrap() > 1 && report["triangles"].as_u64().unwrap() > 1000, "{report}");
+    assert!(report["floor"].is_null());
     let frames = report["frames"].as_array().unwrap();
     assert_eq!(frames.len(), 3);
     for time in ["wall_ms", "cpu_ms"] {

@@ -175,3 +175,24 @@ fn the_reference_stops_at_an_error_and_writes_it() {
     let bad = ["--error-image", "e.png", "--renderer", "reference"];
     assert_fails(&[&["render", SHOWCASE, "-o", &out], &bad[..]].concat(), 2, "end the name in .exr");
 }
+
+#[test]
+fn the_doctor_measures_where_it_is_asked_to() {
+    let report = |arguments: &[&str]| {
+        let output = specula(arguments);
+        // Something may work less well on this adapter.
+        assert!(matches!(output.status.code(), Some(0 | 1)), "{}", stderr(&output));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    assert!(report(&["doctor", "--json"]).get("measured").is_none());
+    let measured = &report(&["doctor", "--measure", "--json"])["measured"];
+    for (kind, count) in [("fill", 6), ("taps", 7), ("arithmetic", 10)] {
+        let rates = measured[kind].as_array().unwrap();
+        assert_eq!(rates.len(), count, "{measured}");
+        for rate in rates {
+            let ns = rate["ns"].as_f64().unwrap();
+            assert!(ns.is_finite() && ns >= 0.0 && !rate["name"].as_str().unwrap().is_empty(), "{rate}");
+        }
+        assert!(rates.iter().any(|rate| rate["ns"].as_f64().unwrap() > 0.0), "{measured}");
+    }
+}

@@ -5,6 +5,7 @@ use super::settings::Setting;
 use super::stage::{Shot, Stage, WARM_UP_FRAMES};
 use crate::cli::clock::{Basis, FrameTimes, median_times};
 use crate::cli::error::CliError;
+use crate::cli::measure::Floor;
 use crate::cli::stats::AdapterStats;
 use crate::progress::Progress;
 use crate::scene::View;
@@ -93,6 +94,8 @@ pub(super) struct SteadyReport {
     pub(super) basis: Basis,
     #[serde(flatten)]
     pub(super) steady: SteadyFrames,
+    /// None where it was not wanted, or the scene is too large for it.
+    pub(super) floor: Option<Floor>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -102,10 +105,11 @@ impl SteadyReport {
         let SteadyFrames { setting, size_px: [width, height], path, draws, triangles, frames, .. } = &self.steady;
         format!(
             "{}\n{} frames after {} others, {setting}, {width}x{height} pixels, {draws} draws of {triangles} triangles by the \
-             {path} path, on {name} ({backend}, {driver}).\n",
+             {path} path, on {name} ({backend}, {driver}).\n{}",
             self.steady.text(),
             frames.len(),
             self.steady.warm_up_frames,
+            self.floor.as_ref().map(|floor| floor.text(self.basis)).unwrap_or_default(),
         )
     }
 }

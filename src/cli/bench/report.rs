@@ -4,6 +4,7 @@ use super::pareto::front;
 use super::settings::Setting;
 use crate::cli::clock::{Basis, FrameTimes};
 use crate::cli::error::CliError;
+use crate::cli::measure::Floor;
 use crate::cli::stats::AdapterStats;
 use crate::gpu::formats::Precision;
 use crate::metrics::truth::RelativeError;
@@ -184,6 +185,7 @@ pub(super) struct Parts {
     pub(super) size_px: [u32; 2],
     pub(super) frames: u32,
     pub(super) basis: Basis,
+    pub(super) floor: Option<Floor>,
     pub(super) picture_truth: TruthReport,
     pub(super) shading_truth: TruthReport,
     pub(super) rows: Vec<Row>,
@@ -203,6 +205,8 @@ pub(super) struct Report {
     pub(super) size_px: [u32; 2],
     frames: u32,
     pub(super) basis: Basis,
+    /// Of the base. None where it was not wanted, or the scene is too large for it.
+    floor: Option<Floor>,
     picture_truth: TruthReport,
     shading_truth: TruthReport,
     /// The base first.
@@ -225,6 +229,7 @@ impl Report {
             size_px: parts.size_px,
             frames: parts.frames,
             basis: parts.basis,
+            floor: parts.floor,
             picture_truth: parts.picture_truth,
             shading_truth: parts.shading_truth,
             settings,
@@ -272,7 +277,7 @@ impl Report {
              `picture` is the RMS of the relative error of radiance, edges and textures included; truth: {}.\n\
              `shading` is the same of the light alone, through the middle of pixels without mipmaps; truth: {}.\n\
              `<` marks errors that do not stand out from the noise of the truth. `*` marks what no other setting beats in time and error.\n\
-             The display pass is off by {:.3} of 255 steps (RMS; {} at most) for the radiance that it is given.\n",
+             The display pass is off by {:.3} of 255 steps (RMS; {} at most) for the radiance that it is given.\n{}",
             self.basis.name(),
             self.frames,
             self.size_px[0],
@@ -281,6 +286,7 @@ impl Report {
             self.shading_truth.text(),
             self.display.rms_codes,
             self.display.largest_codes,
+            self.floor.as_ref().map(|floor| floor.text(self.basis)).unwrap_or_default(),
         )
     }
 }

@@ -6,6 +6,7 @@ use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame,
 use crate::cli::clock::{FrameTimes, Timestamps, time_frame};
 use crate::cli::environment::{CacheArgs, bake_with};
 use crate::cli::error::CliError;
+use crate::cli::measure::FloorOf;
 use crate::gpu::Gpu;
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
@@ -71,6 +72,17 @@ impl<'a> Stage<'a> {
             .lit_environment()
             .map(|e| bake_with(&e.image, &BakeOptions { suns, max_side }, self.cache, progress).maps);
         Ok(self.renderer.upload(&self.gpu.device, &self.gpu.queue, self.scene, maps.as_ref())?)
+    }
+
+    /// What the floor of a shot is made of.
+    pub(in crate::cli) fn floor_of<'s>(&'s self, shot: &'s Shot) -> FloorOf<'s> {
+        FloorOf {
+            scene: self.scene,
+            view: &shot.view,
+            features: self.uploaded[shot.scene].1.features,
+            precision: shot.setting.precision,
+            samples: shot.setting.msaa,
+        }
     }
 
     /// Draws one frame and says what it consists of.
