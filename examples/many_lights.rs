@@ -7,13 +7,12 @@
 
 use specula::capture::{CaptureOptions, CaptureTarget, Wanted, record, submit};
 use specula::frame::{Reach, clusters};
-use specula::glam::{DVec3, UVec2, Vec3};
+use specula::glam::{DVec3, Vec3};
 use specula::gpu::formats::Precision;
 use specula::gpu::{Gpu, GpuOptions, GpuRequest};
 use specula::gpu_scene::GpuScene;
 use specula::renderer::Renderer;
-use specula::scene::framing::default_view;
-use specula::scene::light_field::{self, LightField};
+use specula::scene::light_field::{LightField, view};
 use specula::scene::{Background, Channel, Input, Scene, View};
 
 type Failure = Box<dyn std::error::Error>;
@@ -144,14 +143,6 @@ fn median(times_ms: &[f64]) -> f64 {
     let mut times = times_ms.to_vec();
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-/// A view over the field, a little to the side in every round.
-fn view(side_px: u32, round: u32) -> View {
-    let view = default_view(&LightField { lights: 1, range_m: None, spot_every: 0 }.scene(), UVec2::splat(side_px));
-    let mut camera = light_field::camera();
-    camera.world_from_view.w_axis.x += 0.01 * f64::from(round);
-    View { camera, background: Background::Transparent, ..view }
 }
 
 /// The points that are seen, every sixty-first of them, in the world.

@@ -7,6 +7,7 @@ mod report;
 mod settings;
 mod stage;
 mod steady;
+mod suite;
 mod truth;
 
 use super::clock::{self, Basis, FrameTimes, median_times};
@@ -37,6 +38,7 @@ pub(super) use truth::{Truth, TruthOptions, with_bare_textures};
 /// Draws the model with every setting that trades time for error, in turn, and compares each picture with the reference
 /// renderer's. The setting that --quality, --msaa and --precision ask for is the base of the comparison.
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("model", |model| model.default_value_if("suite", clap::builder::ArgPredicate::IsPresent, "-")))]
 #[command(mut_arg("size", |size| size.default_value("256x256").default_value_if("steady", "true", "1024x1024")))]
 pub(super) struct BenchArgs {
     #[command(flatten)]
@@ -47,6 +49,8 @@ pub(super) struct BenchArgs {
     driver: DriverArgs,
     #[command(flatten)]
     effort: EffortArgs,
+    #[command(flatten)]
+    suite: SuiteArgs,
     /// Print everything as JSON instead of tables.
     #[arg(long)]
     json: bool,
@@ -60,6 +64,53 @@ pub(super) struct BenchArgs {
     #[arg(short, long)]
     quiet: bool,
 }
+
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "The suite")]
+struct SuiteArgs {
+    /// Time fixed scenes instead of MODEL: all, or those with these names or these beginnings of names, such as
+    /// helmet,lights. The helmet is looked for in the folder that SPECULA_SAMPLES names.
+    #[arg(
+        long, value_name = "NAME,...", num_args = 0..=1, value_delimiter = ',', default_missing_value = "",
+        conflicts_with_all = NOT_OF_THE_SUITE,
+    )]
+    suite: Option<Vec<String>>,
+    /// Compare the suite with another build of the program, which runs in turn with this one, or with the figures in a
+    /// .json file that --stats has written.
+    #[arg(long, value_name = "PROGRAM|FILE.json")]
+    baseline: Option<PathBuf>,
+    /// Draw the suite as bars, with floors and baseline.
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+/// What the scenes of the suite have of their own.
+const NOT_OF_THE_SUITE: [&str; 24] = [
+    "model",
+    "scene",
+    "overrides",
+    "env",
+    "env_rotation",
+    "env_intensity",
+    "specs",
+    "size",
+    "camera",
+    "orbit",
+    "target",
+    "eye",
+    "look_at",
+    "fov",
+    "ortho",
+    "exposure",
+    "background",
+    "quality",
+    "msaa",
+    "steady",
+    "pareto",
+    "truth_samples",
+    "truth_error",
+    "tone_map",
+];
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Measurement")]
@@ -91,6 +142,13 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("bench measures the GPU against the reference; leave out --renderer".into()));
     }
     let progress = StderrProgress::new(args.quiet);
+    if let Some(names) = &args.suite.suite {
+        let names: Vec<String> = names.iter().filter(|name| !name.is_empty()).cloned().collect();
+        return suite::run(args, &names, &progress);
+    }
+    if args.suite.plot.is_some() || args.suite.baseline.is_some() {
+        return Err(CliError::Usage("--plot and --baseline are for --suite; use --pareto or --stats".into()));
+    }
     let (scene, warnings) = args.subject.load(&progress, &Stopwatch::default())?;
     let view = args.view.view(&scene, args.subject.has_panorama())?;
     // Float targets are among the settings.

@@ -47,6 +47,15 @@ impl Basis {
         }
     }
 
+    /// Where [`FrameTimes`] has it.
+    pub(super) fn field(self) -> &'static str {
+        match self {
+            Self::Wall => "wall_ms",
+            Self::Cpu => "cpu_ms",
+            Self::Gpu => "gpu_ms",
+        }
+    }
+
     /// Fails where some frame has no such time.
     pub(super) fn check<'f>(self, mut frames: impl Iterator<Item = &'f FrameTimes>) -> Result<(), CliError> {
         let unknown = || CliError::Usage(format!("{} is not known on this machine; take another --clock", self.name()));

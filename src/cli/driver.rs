@@ -5,6 +5,7 @@ use crate::capture::{CaptureError, CaptureOptions};
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
 use crate::renderer::PathChoice;
+use clap::ValueEnum;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Renderer")]
@@ -92,6 +93,18 @@ impl DriverArgs {
             PathArg::Auto | PathArg::Forward => PathChoice::Forward,
             PathArg::Deferred => PathChoice::Deferred,
         }
+    }
+
+    /// The flags that make another process of this program draw on the same adapter by the same path.
+    pub(super) fn arguments(&self) -> Vec<String> {
+        let value = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| value().map(|v| v.get_name().to_owned());
+        let flags = [
+            ("--adapter", self.adapter.clone()),
+            ("--backend", self.backend.and_then(|backend| value(&|| backend.to_possible_value()))),
+            ("--path", value(&|| self.path.to_possible_value())),
+            ("--precision", value(&|| self.precision.to_possible_value())),
+        ];
+        flags.into_iter().filter_map(|(flag, value)| Some([flag.to_owned(), value?])).flatten().collect()
     }
 
     /// The adapter that is asked for.

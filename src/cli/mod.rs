@@ -81,3 +81,14 @@ pub fn main() -> ExitCode {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn flags_that_are_named_by_others_exist() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,10 +1,13 @@
 //! A floor with bodies under a field of many lights, made in code: what many lights are measured and tested by.
 
-use super::{Camera, Light, LightKind, Material, Mesh, Node, Primitive, Projection, Scene, Topology, shapes};
-use glam::{DMat4, DVec3, Vec3, Vec4};
+use super::{
+    Background, Camera, Light, LightKind, Material, Mesh, Node, Primitive, Projection, Scene, Topology, View, framing,
+    shapes,
+};
+use glam::{DMat4, DVec3, UVec2, Vec3, Vec4};
 
 /// Side of the floor, metres.
-const FLOOR_M: f32 = 64.0;
+pub const FLOOR_M: f32 = 64.0;
 /// Bodies along each side of the floor.
 const BODIES: u32 = 8;
 
@@ -46,6 +49,15 @@ impl LightField {
         }
         scene
     }
+}
+
+/// A square picture of `side_px` pixels on nothing, 1 cm further to the side in every round, so that lights are sorted
+/// anew.
+pub fn view(side_px: u32, round: u32) -> View {
+    let mut camera = camera();
+    camera.world_from_view.w_axis.x += 0.01 * f64::from(round);
+    let view = framing::default_view(&Scene::default(), UVec2::splat(side_px));
+    View { camera, background: Background::Transparent, ..view }
 }
 
 /// Looks over the field from one of its sides; the floor fills the picture.

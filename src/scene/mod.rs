@@ -14,6 +14,7 @@ mod light;
 pub mod light_field;
 mod material;
 mod mesh;
+pub mod patches;
 pub mod shapes;
 mod spot_cone;
 mod view;

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod bench;
+mod bench_suite;
 mod cache;
 mod cli;
 mod compare;

@@ -28,6 +28,18 @@ pub(in crate::cli) struct Stage<'a> {
     renderer: Renderer,
     timestamps: Option<Timestamps>,
     uploaded: Vec<(MapsKey, GpuScene)>,
+    /// Between frames that are timed.
+    pub(super) motion: CameraMotion,
+    frames_drawn: u32,
+}
+
+/// What the camera does between frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::cli) enum CameraMotion {
+    Still,
+    /// Forth and back by a ten-thousandth of its distance to the origin, so that every frame is planned anew and shows the
+    /// same.
+    Sideways,
 }
 
 /// A view that is ready to be drawn with a setting.
@@ -42,7 +54,16 @@ pub(in crate::cli) struct Shot {
 impl<'a> Stage<'a> {
     pub(in crate::cli) fn new(gpu: &'a Gpu, scene: &'a Scene, cache: &'a CacheArgs) -> Self {
         let renderer = Renderer::new(&gpu.device, &gpu.queue);
-        Self { gpu, scene, cache, renderer, timestamps: Timestamps::new(gpu), uploaded: Vec::new() }
+        Self {
+            gpu,
+            scene,
+            cache,
+            renderer,
+            timestamps: Timestamps::new(gpu),
+            uploaded: Vec::new(),
+            motion: CameraMotion::Still,
+            frames_drawn: 0,
+        }
     }
 
     /// Makes ready to draw `view` with `setting`, whose tier and samples replace the view's.
@@ -119,13 +140,25 @@ impl<'a> Stage<'a> {
     }
 
     fn frame(&mut self, shot: &Shot, drawn: &mut FrameStats) -> Result<FrameTimes, CaptureError> {
+        let view = self.next_view(&shot.view);
         let Self { gpu, renderer, timestamps, uploaded, .. } = self;
         let (_, scene) = &mut uploaded[shot.scene];
         renderer.set_paths(shot.setting.path);
         time_frame(gpu, timestamps.as_ref(), |encoder| {
-            *drawn = record(gpu, renderer, encoder, scene, &shot.view, &shot.target, true)?;
+            *drawn = record(gpu, renderer, encoder, scene, &view, &shot.target, true)?;
             Ok(())
         })
+    }
+
+    fn next_view(&mut self, view: &View) -> View {
+        let mut view = view.clone();
+        if self.motion == CameraMotion::Sideways {
+            let step_m = 1e-4 * view.camera.position_in_world().length();
+            let right = view.camera.world_from_view.x_axis;
+            view.camera.world_from_view.w_axis += right * (step_m * f64::from(self.frames_drawn % 7));
+            self.frames_drawn += 1;
+        }
+        view
     }
 
     /// The radiance of surfaces without background, or of one term of it, at the size of the picture, cd/m2.

@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 
 /// Rays through the picture that tell what its pixels show.
 const RAYS: u32 = 1 << 16;
+/// The lights that reach a point are counted for every so many rays.
+const LIGHTS_EVERY: u32 = 8;
 /// Scenes of more triangles are not traced: their places alone take gigabytes.
 const TRIANGLES_MAX: usize = 3_000_000;
 
@@ -34,13 +36,15 @@ pub(in crate::cli) struct FloorOf<'a> {
 
 /// The floor, and what is in it: every pixel of the radiance target is filled once, with its samples, depth and resolve,
 /// and once in the picture that is displayed; the nearest surface of each pixel (and those that are seen through) is
-/// shaded once, in its middle, by the forward shader; the panorama is seen in the rest. Vertices, triangles, edges, hidden
-/// surfaces, further turns of loops over lights, and reads of buffers are not in it.
+/// shaded once, in its middle, by the forward shader, with the lights that reach it; the panorama is seen in the rest.
+/// Vertices, triangles, edges, hidden surfaces, lights that are looked at in vain, and reads of buffers are not in it.
 #[derive(Debug, Clone, Serialize)]
 pub(in crate::cli) struct Floor {
     pixels: u64,
     /// Pixels that a surface covers, of all, in [0, 1]; more where surfaces are seen through others.
     covered: f64,
+    /// Point, spot and directional lights that reach a covered pixel, on average.
+    lights_a_covered_pixel: f64,
     /// Lookups and operations of a covered pixel, on average.
     taps_a_covered_pixel: f64,
     multiply_adds_a_covered_pixel: f64,
@@ -64,6 +68,8 @@ struct Seen {
     surfaces: BTreeMap<(usize, usize), f64>,
     /// Not hidden by any surface.
     background: f64,
+    /// That reach a surface, on average.
+    lights: f64,
 }
 
 impl FloorOf<'_> {
@@ -91,7 +97,7 @@ impl FloorOf<'_> {
         work.add(&self.display_work()?, pixels);
         if self.view.background == Background::Environment && self.features.environment {
             let panorama = fragment_work(&background_module(&ShaderSources::default())?.parse()?);
-            work.add(&panorama.unwrap_or_default(), seen.background);
+            work.add(&panorama.unwrap_or_default().pixel, seen.background);
         }
         let covered: f64 = seen.surfaces.values().sum();
         let fill_ms = fills.iter().sum::<f64>() * pixels * 1e-6;
@@ -102,6 +108,7 @@ impl FloorOf<'_> {
         Ok(Some(Floor {
             pixels: u64::from(size.x) * u64::from(size.y),
             covered: covered / pixels,
+            lights_a_covered_pixel: seen.lights,
             taps_a_covered_pixel: surface_taps / covered.max(1.0),
             multiply_adds_a_covered_pixel: surface_ops / covered.max(1.0),
             fill_ms,
@@ -115,6 +122,7 @@ impl FloorOf<'_> {
 
     fn seen(&self) -> Seen {
         let world = World::new(self.scene, self.view);
+        let lights = self.scene.lights_in_world();
         let (width, height) = (self.view.size_px.x, self.view.size_px.y);
         let step = (f64::from(width) * f64::from(height) / f64::from(RAYS)).sqrt().ceil().max(1.0) as u32;
         let (columns, rows) = (width.div_ceil(step), height.div_ceil(step));
@@ -124,12 +132,21 @@ impl FloorOf<'_> {
             let layers = world.layers(&Ray { origin, direction, t_min: 0.0, t_max: f64::INFINITY });
             let is_open = layers.iter().all(|layer| layer.alpha < 1.0);
             let draws = layers.iter().map(|layer| world.geometry.draw(&layer.hit));
-            (draws.map(|draw| (draw.instance.mesh, draw.primitive_index)).collect::<Vec<_>>(), is_open)
+            let places: Vec<_> = draws.map(|draw| (draw.instance.mesh, draw.primitive_index)).collect();
+            let first = layers.first().filter(|_| i.is_multiple_of(LIGHTS_EVERY));
+            let reaching = first.map(|layer| {
+                let point = origin + direction * layer.hit.t;
+                lights.iter().filter(|light| light.reaches(point)).count()
+            });
+            (places, is_open, reaching)
         };
         let rays: Vec<_> = (0..columns * rows).into_par_iter().map(surfaces_at).collect();
         let weight = f64::from(width) * f64::from(height) / rays.len().max(1) as f64;
-        let mut seen = Seen { surfaces: BTreeMap::new(), background: 0.0 };
-        for (places, is_open) in rays {
+        let (lit, count) =
+            rays.iter().filter_map(|(.., reaching)| *reaching).fold((0, 0), |(l, n), at| (l + at, n + 1));
+        let mut seen =
+            Seen { surfaces: BTreeMap::new(), background: 0.0, lights: lit as f64 / f64::from(count.max(1)) };
+        for (places, is_open, _) in rays {
             places.into_iter().for_each(|place| *seen.surfaces.entry(place).or_default() += weight);
             seen.background += if is_open { weight } else { 0.0 };
         }
@@ -147,7 +164,9 @@ impl FloorOf<'_> {
         let mut work = Work::default();
         for (features, pixels) in of_shader {
             let module = forward_module(&ShaderSources::default(), &features)?.parse()?;
-            work.add(&fragment_work(&module).unwrap_or_default(), pixels);
+            let shader = fragment_work(&module).unwrap_or_default();
+            work.add(&shader.pixel, pixels);
+            work.add(&shader.light, pixels * seen.lights);
         }
         Ok(work)
     }
@@ -155,7 +174,7 @@ impl FloorOf<'_> {
     fn display_work(&self) -> Result<Work, ShaderError> {
         let features = DisplayFeatures { tone_map: self.view.tone_map, encode_srgb: true };
         let module = display_module(&ShaderSources::default(), features)?.parse()?;
-        Ok(fragment_work(&module).unwrap_or_default())
+        Ok(fragment_work(&module).unwrap_or_default().pixel)
     }
 }
 
@@ -176,18 +195,21 @@ impl Rates {
 impl Floor {
     /// In sentences.
     pub(in crate::cli) fn text(&self, basis: Basis) -> String {
-        let Self { pixels, covered, taps_a_covered_pixel, multiply_adds_a_covered_pixel, .. } = self;
         let times = |ratio: Option<f64>| ratio.map_or_else(|| "-".into(), |ratio| format!("{ratio:.2}"));
         format!(
-            "The floor is {:.1} ms of {}: {:.1} fill and resolve {pixels} pixels, {:.1} are lookups, {:.1} arithmetic. Surfaces cover \
-             {:.0} % of the pixels, each with {taps_a_covered_pixel:.1} lookups and {multiply_adds_a_covered_pixel:.0} multiply-adds. \
+            "The floor is {:.1} ms of {}: {:.1} fill and resolve {} pixels, {:.1} are lookups, {:.1} arithmetic. \
+             Surfaces cover {:.0} % of the pixels, each with {:.1} lights, {:.1} lookups and {:.0} multiply-adds. \
              The frame takes {} of the floor, and {} of its fill and lookups alone.\n",
             self.ms,
             basis.name(),
             self.fill_ms,
+            self.pixels,
             self.taps_ms,
             self.arithmetic_ms,
-            100.0 * covered,
+            100.0 * self.covered,
+            self.lights_a_covered_pixel,
+            self.taps_a_covered_pixel,
+            self.multiply_adds_a_covered_pixel,
             times(self.ratio),
             times(self.ratio_to_fill_and_taps),
         )

@@ -88,7 +88,7 @@ pub(super) fn count_of(op: Op) -> u32 {
     match op {
         Op::MultiplyAdd => 256,
         Op::Divide | Op::Sqrt | Op::InverseSqrt => 64,
-        _ => 16,
+        _ => 32,
     }
 }
 

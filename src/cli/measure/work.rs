@@ -8,7 +8,7 @@ use naga::{
 };
 use std::collections::HashMap;
 
-/// Lookups and operations of one pixel. A loop counts as one turn, a branch as both of its sides; loads from uniforms and
+/// Lookups and operations. A loop counts as one turn, a branch as both of its sides; loads from uniforms and
 /// buffers, and what a driver leaves out because it is done twice, are not looked at.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(in crate::cli) struct Work {
@@ -41,8 +41,20 @@ impl Work {
     }
 }
 
+/// The function that is called for each light that reaches a point.
+const LIGHT: &str = "radiance_of_light";
+
+/// The work of a fragment shader.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(in crate::cli) struct FragmentWork {
+    /// Of a pixel, without its punctual lights.
+    pub(in crate::cli) pixel: Work,
+    /// Of each of these.
+    pub(in crate::cli) light: Work,
+}
+
 /// The work of the fragment shader of a module; `None` where the module is not valid or has none.
-pub(in crate::cli) fn fragment_work(module: &Module) -> Option<Work> {
+pub(in crate::cli) fn fragment_work(module: &Module) -> Option<FragmentWork> {
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module).ok()?;
     let index = module.entry_points.iter().position(|entry| entry.stage == naga::ShaderStage::Fragment)?;
     let function = &module.entry_points[index].function;
@@ -51,7 +63,9 @@ pub(in crate::cli) fn fragment_work(module: &Module) -> Option<Work> {
     // Each component of an attribute: a plane over the picture, and the division by depth taken back.
     let interpolated = function.arguments.iter().map(|argument| interpolated(module, argument.ty, &argument.binding));
     work.simple(5.0 * interpolated.sum::<f64>());
-    Some(work)
+    let light = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(LIGHT));
+    let light = light.map(|(handle, function)| counter.function(function, &info[handle])).unwrap_or_default();
+    Some(FragmentWork { pixel: work, light })
 }
 
 /// Components that are interpolated for an argument.
@@ -114,7 +128,9 @@ impl Counter<'_> {
         if let Some(known) = self.known.get(&function) {
             return *known;
         }
-        let work = self.function(&self.module.functions[function], &self.info[function]);
+        let called = &self.module.functions[function];
+        let is_light = called.name.as_deref() == Some(LIGHT);
+        let work = if is_light { Work::default() } else { self.function(called, &self.info[function]) };
         self.known.insert(function, work);
         work
     }
@@ -223,11 +239,14 @@ mod tests {
             @group(0) @binding(1) var lookup: sampler;
             @group(1) @binding(0) var base_color_texture: texture_2d<f32>;
             @group(1) @binding(1) var dfg_table: texture_2d<f32>;
+            fn radiance_of_light(x: vec3f) -> vec3f {{ return x * x; }}
             fn twice(x: vec3f) -> vec3f {{ return x + x; }}
             @vertex fn vertex() -> @builtin(position) vec4f {{ return vec4f(0.0); }}
             @fragment fn fragment(@location(0) p: vec3f, @builtin(position) at: vec4f) -> @location(0) vec4f {{ {body} }}"
         );
-        fragment_work(&naga::front::wgsl::parse_str(&text).unwrap()).unwrap()
+        let found = fragment_work(&naga::front::wgsl::parse_str(&text).unwrap()).unwrap();
+        assert_eq!(2.0 * found.light.ops(Op::MultiplyAdd), 3.0);
+        found.pixel
     }
 
     #[test]
@@ -256,6 +275,8 @@ mod tests {
         assert_eq!(simple("let x = mat3x3f(p, p, p) * p;"), 15.0);
         assert_eq!(simple("var x = p; if at.x > 0.0 { x = twice(x); } else { x = twice(twice(x)); }"), 10.0);
         assert_eq!(simple("var x = p; loop { x = twice(x); if x.x > 1.0 { break; } }"), 4.0);
+        // Lights count apart.
+        assert_eq!(simple("var x = p; loop { x += radiance_of_light(x); if x.x > 1.0 { break; } }"), 4.0);
         let work = of("let x = normalize(p) / p + pow(p, p);");
         assert_eq!(Op::ALL.map(|op| work[op as usize]), [5.5, 3.0, 0.0, 1.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0]);
     }
