@@ -41,7 +41,7 @@ fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surfa
     surface.dielectric_F0 = material.dielectric_F0;
     surface.specular = saturate(material.specular * specular_texel(v).w);
     surface.specular_color = material.specular_color * specular_color_texel(v).xyz;
-    surface.occlusion = saturate(1.0 + material.occlusion_strength * (occlusion_texel(v).x - 1.0));
+    surface.occlusion = saturate(1.0 + material.occlusion_strength * (occlusion_texel(v, metallic_roughness).x - 1.0));
     surface.emissive = material.emissive * emissive_texel(v).xyz;
     return surface;
 }

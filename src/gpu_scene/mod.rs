@@ -5,6 +5,7 @@ mod geometry;
 mod lights;
 mod materials;
 pub mod mips;
+mod packing;
 mod pulled;
 mod tables;
 mod textures;

@@ -1,15 +1,33 @@
 //! Images and samplers of materials, each made once.
 
 use super::mips::{self, Role};
+use super::packing::with_red_of;
 use crate::frame::Drawables;
 use crate::gpu::{Staging, formats};
-use crate::scene::{AlphaMode, Image, Material, Pixels, Sampler, Scene, TextureSlot, Wrap};
+use crate::scene::{AlphaMode, Image, Material, Pixels, Sampler, Scene, Texture, TextureSlot, Wrap};
 use crate::shader::{MaterialFeatures, SceneFeatures};
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 
-/// A texture: the image, what its channels mean, and whether it has smaller levels.
-pub(super) type TextureKey = (usize, Role, bool);
+/// What tells a texture from others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct TextureKey {
+    /// Index into the scene's images.
+    image: usize,
+    /// Another image, of the same layout, whose R it has in place of its own.
+    red: Option<usize>,
+    role: Role,
+    /// Whether it has smaller levels.
+    mipmapped: bool,
+}
+
+impl TextureKey {
+    fn levels(self, scene: &Scene, max_side: u32) -> Vec<mips::Level> {
+        let image = &scene.images[self.image];
+        let packed = self.red.map(|red| with_red_of(image, &scene.images[red]));
+        mips::chain(packed.as_ref().unwrap_or(image), self.role, self.mipmapped, max_side)
+    }
+}
 
 /// The levels of all textures that a scene draws with, made on all cores. They share the texels of the scene's images.
 #[derive(Debug)]
@@ -27,19 +45,24 @@ impl TextureLevels {
             .flat_map(|drawable| textures_of(scene, &scene.materials[drawable.material], &drawable.material_features))
             .collect();
         let keys: Vec<TextureKey> = keys.into_iter().collect();
-        let levels = |&key: &TextureKey| (key, mips::chain(&scene.images[key.0], key.1, key.2, max_side));
-        Self { levels: keys.par_iter().map(levels).collect() }
+        Self { levels: keys.par_iter().map(|&key| (key, key.levels(scene, max_side))).collect() }
     }
 }
 
 /// The textures that draws of a material with `features` read, in the order of their bindings.
 pub(super) fn textures_of(scene: &Scene, material: &Material, features: &MaterialFeatures) -> Vec<TextureKey> {
-    let used = features.textures().filter_map(|(slot, _)| Some((slot, material.texture(slot)?.texture)));
-    let key = |(slot, texture): (TextureSlot, usize)| {
-        let texture = scene.textures[texture];
-        (texture.image, role(slot, material), texture.sampler.mip_linear.is_some())
+    let texture = |slot| Some(scene.textures[material.texture(slot)?.texture]);
+    let occlusion = texture(TextureSlot::Occlusion).filter(|_| features.packed_occlusion);
+    let key = |slot, Texture { image, sampler }: Texture| {
+        let red = occlusion.filter(|_| slot == TextureSlot::MetallicRoughness).map(|texture| texture.image);
+        TextureKey {
+            image,
+            red: red.filter(|&red| red != image),
+            role: role(slot, material),
+            mipmapped: sampler.mip_linear.is_some(),
+        }
     };
-    used.map(key).collect()
+    features.textures().filter_map(|(slot, _)| Some(key(slot, texture(slot)?))).collect()
 }
 
 fn role(slot: TextureSlot, material: &Material) -> Role {
@@ -77,17 +100,16 @@ impl TextureCache {
         if let Some(view) = self.views.get(&key) {
             return view.clone();
         }
-        let (index, role, mipmapped) = key;
-        let image = &scene.images[index];
+        let image = &scene.images[key.image];
         let max_side = device.limits().max_texture_dimension_2d;
         if image.width.max(image.height) > max_side {
-            let Image { width, height, .. } = image;
-            let message = format!("image {index} is {width} x {height}; this device draws it at {max_side} at most");
+            let (Image { width, height, .. }, TextureKey { image, .. }) = (image, key);
+            let message = format!("image {image} is {width} x {height}; this device draws it at {max_side} at most");
             self.warnings.push(message);
         }
         let levels = self.levels.levels.remove(&key);
-        let levels = levels.unwrap_or_else(|| mips::chain(image, role, mipmapped, max_side));
-        let texture = upload(device, staging, image, role, levels);
+        let levels = levels.unwrap_or_else(|| key.levels(scene, max_side));
+        let texture = upload(device, staging, image, key.role, levels);
         self.bytes += (0..texture.mip_level_count())
             .map(|level| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1)))
             .sum::<u64>()

@@ -8,7 +8,7 @@ use crate::scene::{
 };
 use crate::shader::{
     ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Slot, Slots, VertexFeatures,
-    forward_slots,
+    forward_slots, texel_function,
 };
 use std::fmt::Write;
 
@@ -85,11 +85,11 @@ fn material() -> String {
          // What each texture slot reads.\nvar<private> texels: array<vec4f, TEXTURE_SLOTS>;\n"
     );
     for slot in TextureSlot::ALL {
-        let (name, index) = (slot.name(), slot as usize);
+        let index = slot as usize;
         // Normals are signed on the device (`gpu_scene::mips`).
         let read = if slot == TextureSlot::Normal { "(texels[SLOT] * 255.0 - 128.0) / 127.0" } else { "texels[SLOT]" };
         let read = read.replace("SLOT", &index.to_string());
-        let _ = writeln!(text, "\nfn {name}_texel(v: VertexOut) -> vec4f {{\n    return {read};\n}}");
+        let _ = writeln!(text, "{}", texel_function(slot, &read));
     }
     text
 }

@@ -19,6 +19,12 @@ pub struct Image {
 }
 
 impl Image {
+    /// Whether the other has as many texels a row and a column, of the same kind.
+    pub fn has_layout_of(&self, other: &Self) -> bool {
+        let same_kind = std::mem::discriminant(&self.pixels) == std::mem::discriminant(&other.pixels);
+        (self.width, self.height, same_kind) == (other.width, other.height, true)
+    }
+
     /// Lets go of the texels, for whoever has made a texture of them. The size and the kind of texels stay.
     pub fn forget_texels(&mut self) {
         self.pixels = match self.pixels {

@@ -1,8 +1,8 @@
 //! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
 
 use crate::scene::{
-    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureSlot, Topology,
-    UvTransform,
+    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureRef, TextureSlot,
+    Topology, UvTransform,
 };
 use std::fmt;
 
@@ -148,6 +148,8 @@ pub struct MaterialFeatures {
     pub disney_anisotropic: bool,
     /// The table of the Disney lobes' albedos is read.
     pub disney_table: bool,
+    /// Occlusion is in R of the metallic-roughness texture, which is the occlusion texture too or has been packed with it.
+    pub packed_occlusion: bool,
     textures: [Option<TextureUse>; TextureSlot::ALL.len()],
 }
 
@@ -179,6 +181,7 @@ impl MaterialFeatures {
             fresnel: if lit { FresnelFeature::of(material) } else { FresnelFeature::Schlick },
             disney_anisotropic: disney.is_some_and(|d| d.anisotropic > 0.0) && primitive.tangents.is_some(),
             disney_table: disney.is_some() && light.environment,
+            packed_occlusion: false,
             textures: [None; _],
         };
         for (slot, texture) in material.textures() {
@@ -196,7 +199,20 @@ impl MaterialFeatures {
                 transformed: texture.transform != UvTransform::IDENTITY,
             });
         }
+        features.pack_occlusion(material, scene);
         features
+    }
+
+    /// Leaves the occlusion texture out where one lookup gives both.
+    fn pack_occlusion(&mut self, material: &Material, scene: &Scene) {
+        let [occlusion, other] = [TextureSlot::Occlusion, TextureSlot::MetallicRoughness].map(|slot| {
+            self.texture(slot)?;
+            material.texture(slot)
+        });
+        if occlusion.zip(other).is_some_and(|(occlusion, other)| are_packable(occlusion, other, scene)) {
+            self.textures[TextureSlot::Occlusion as usize] = None;
+            self.packed_occlusion = true;
+        }
     }
 
     fn reads(&self, slot: TextureSlot, material: &Material, primitive: &Primitive) -> bool {
@@ -232,6 +248,17 @@ impl MaterialFeatures {
     pub fn sampler_count(&self) -> u32 {
         self.textures().map(|(_, texture)| u32::from(texture.sampler) + 1).max().unwrap_or(0)
     }
+}
+
+/// Whether two textures always read the same texel of images of one size, so that their channels can share one image.
+fn are_packable(a: &TextureRef, b: &TextureRef, scene: &Scene) -> bool {
+    let [of_a, of_b] = [a, b].map(|reference| scene.textures[reference.texture]);
+    let is_alike = || {
+        let images = scene.images.get(of_a.image).zip(scene.images.get(of_b.image));
+        images.is_some_and(|(a, b)| a.has_layout_of(b))
+    };
+    (a.uv_set, a.transform, of_a.sampler) == (b.uv_set, b.transform, of_b.sampler)
+        && (of_a.image == of_b.image || is_alike())
 }
 
 /// The samplers that are bound, in the order of [`TextureUse::sampler`].
@@ -335,6 +362,7 @@ impl fmt::Display for ForwardFeatures {
             (self.material.fresnel == FresnelFeature::Conductor, "conductor"),
             (lit && self.geometry != Geometry::SmithCorrelated, self.geometry.name()),
             (self.vertex.color, "vertex_color"),
+            (self.material.packed_occlusion, "packed_occlusion"),
             (self.material.alpha == Alpha::Mask, "mask"),
             (self.material.alpha == Alpha::Blend, "blend"),
             (self.material.double_sided, "double_sided"),

@@ -136,7 +136,15 @@ pub(super) fn material_interface(material: &MaterialFeatures, gradients: Gradien
                 }
             }
         };
-        let _ = writeln!(text, "\nfn {name}_texel(v: VertexOut) -> vec4f {{\n    return {value};\n}}");
+        let is_packed = slot == TextureSlot::Occlusion && material.packed_occlusion;
+        let value = if is_packed { "metallic_roughness" } else { &value };
+        let _ = writeln!(text, "{}", texel_function(slot, value));
     }
     text
+}
+
+/// What a texture slot reads at a point. That of occlusion is given the metallic-roughness texel, which it may be part of.
+pub(crate) fn texel_function(slot: TextureSlot, value: &str) -> String {
+    let beside = if slot == TextureSlot::Occlusion { ", metallic_roughness: vec4f" } else { "" };
+    format!("\nfn {}_texel(v: VertexOut{beside}) -> vec4f {{\n    return {value};\n}}", slot.name())
 }

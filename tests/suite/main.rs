@@ -19,6 +19,7 @@ mod lobe_tiers;
 mod many_lights;
 mod memory;
 mod mutants;
+mod packing;
 mod paths;
 mod shaders;
 mod stability;

@@ -184,7 +184,7 @@ const IN_FRAMES: &[Mutant] = &[
     fault("surface/surface.wgsl", "metallic_roughness.y", "metallic_roughness.x"),
     fault("surface/surface.wgsl", "specular_texel(v).w", "specular_texel(v).x"),
     fault("surface/surface.wgsl", " * specular_color_texel(v).xyz", ""),
-    fault("surface/surface.wgsl", "occlusion_texel(v).x", "occlusion_texel(v).y"),
+    fault("surface/surface.wgsl", "occlusion_texel(v, metallic_roughness).x", "metallic_roughness.y"),
     fault("surface/surface.wgsl", "material.occlusion_strength * ", ""),
     fault("surface/surface.wgsl", " * emissive_texel(v).xyz", ""),
     fault("surface/surface.wgsl", " * vertex_color(v)", ""),

@@ -73,9 +73,11 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
 
 fn material(slots: u32) -> Material {
     let mut material = Material { metallic: 0.5, emissive_nits: Vec3::ONE, ..Default::default() };
+    // With three kinds the occlusion texture is read elsewhere than the metallic-roughness texture, with two as that is.
+    let kinds = 2 + slots % 2;
     for (index, slot) in (0..).zip(TextureSlot::ALL).filter(|(index, _)| slots >> index & 1 == 1) {
-        let transform = UvTransform { offset: Vec2::splat((index % 3) as f32), ..UvTransform::IDENTITY };
-        material.set_texture(slot, Some(TextureRef { texture: index % 2, uv_set: index as u32 % 2, transform }));
+        let transform = UvTransform { offset: Vec2::splat((index % kinds) as f32), ..UvTransform::IDENTITY };
+        material.set_texture(slot, Some(TextureRef { texture: index as usize % 2, uv_set: index % 2, transform }));
     }
     material.double_sided = slots.is_multiple_of(2);
     material.anisotropy_strength = if slots.is_multiple_of(4) { 0.5 } else { 0.0 };
