@@ -1,3 +1,7 @@
+#import <dielectric>
+#import <emission>
+#import <occlusion>
+#import <reflecting>
 #import <normal>
 #import <facing>
 #import <tangents>
@@ -36,12 +40,12 @@ fn read_surface(v: VertexOut, front_facing: bool, toward_viewer: vec3f) -> Surfa
     // Vertex colours are floats and may be anything.
     surface.base_color = saturate(base_color.xyz);
     surface.alpha = base_color.w;
-    surface.metallic = saturate(material.metallic * metallic_roughness.z);
-    surface.perceptual_roughness = saturate(material.perceptual_roughness * metallic_roughness.y);
-    surface.dielectric_F0 = material.dielectric_F0;
-    surface.specular = saturate(material.specular * specular_texel(v).w);
-    surface.specular_color = material.specular_color * specular_color_texel(v).xyz;
-    surface.occlusion = saturate(1.0 + material.occlusion_strength * (occlusion_texel(v, metallic_roughness).x - 1.0));
-    surface.emissive = material.emissive * emissive_texel(v).xyz;
+    surface.metallic = read_metallic(metallic_roughness);
+    surface.perceptual_roughness = read_perceptual_roughness(metallic_roughness);
+    surface.dielectric_F0 = read_dielectric_F0();
+    surface.specular = read_specular(v);
+    surface.specular_color = read_specular_color(v);
+    surface.occlusion = read_occlusion(v, metallic_roughness);
+    surface.emissive = read_emission(v);
     return surface;
 }

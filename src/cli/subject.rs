@@ -55,23 +55,35 @@ impl SubjectArgs {
         name.unwrap_or(&self.environment.env)
     }
 
-    /// The scene with its lights and environment, and what is to be warned of.
+    /// The scene with its lights and environment, and what is to be warned of. Textures that its materials never sample
+    /// are left out.
     ///
     /// # Errors
     /// When a flag is malformed, or the model or the panorama cannot be read.
     pub(super) fn load(&self, progress: &dyn Progress, watch: &Stopwatch) -> Result<(Scene, Vec<String>), CliError> {
-        let Loaded { scene, warnings, .. } = self.load_with_file(progress, watch)?;
+        // An override may have a use for what was not sampled before it.
+        let sampled_textures_only = self.overrides.is_empty();
+        let Loaded { scene, warnings, .. } = self.load_textures(sampled_textures_only, progress, watch)?;
         Ok((scene, warnings))
     }
 
-    /// The same, and what the file says of itself.
+    /// The same with all textures that the materials have, and what the file says of itself.
     ///
     /// # Errors
     /// As [`Self::load`].
     pub(super) fn load_with_file(&self, progress: &dyn Progress, watch: &Stopwatch) -> Result<Loaded, CliError> {
+        self.load_textures(false, progress, watch)
+    }
+
+    fn load_textures(
+        &self,
+        sampled_textures_only: bool,
+        progress: &dyn Progress,
+        watch: &Stopwatch,
+    ) -> Result<Loaded, CliError> {
         let lights = self.lights.parse()?;
         let (imported, environment) = beside(
-            || watch.time("decode", || self.import(progress)),
+            || watch.time("decode", || self.import(sampled_textures_only, progress)),
             || watch.time("environment decode", || self.environment.load()),
         );
         let Imported { mut scene, warnings, scene_names, scene_index, extensions_used } = imported?;
@@ -85,12 +97,12 @@ impl SubjectArgs {
         Ok(Loaded { scene, warnings, scene_names, scene_index, extensions_used })
     }
 
-    fn import(&self, progress: &dyn Progress) -> Result<Imported, CliError> {
+    fn import(&self, sampled_textures_only: bool, progress: &dyn Progress) -> Result<Imported, CliError> {
         let scene = self.scene.as_ref().map(|scene| match scene.parse() {
             Ok(index) => SceneChoice::Index(index),
             Err(_) => SceneChoice::Name(scene.clone()),
         });
-        load_model(&self.model, &ImportOptions { scene, progress, ..Default::default() })
+        load_model(&self.model, &ImportOptions { scene, sampled_textures_only, progress, ..Default::default() })
     }
 }
 

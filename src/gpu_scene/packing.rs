@@ -43,7 +43,7 @@ mod tests {
         let packed = levels(&with_red_of(&data, &occlusion));
         assert_eq!(packed.len(), 3);
         for ((packed, data), occlusion) in packed.iter().zip(levels(&data)).zip(levels(&occlusion)) {
-            assert_ne!(data[0], occlusion[0]);
+            assert_ne!(data[..], occlusion[..]);
             for ((packed, data), occlusion) in packed.chunks(4).zip(data.chunks(4)).zip(occlusion.chunks(4)) {
                 assert_eq!(packed, [occlusion[0], data[1], data[2], data[3]]);
             }

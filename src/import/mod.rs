@@ -39,7 +39,7 @@ pub use limits::Limits;
 pub use picture::{picture_from_path, picture_from_slice};
 
 use crate::progress::{Progress, Silent};
-use crate::scene::{Material, Mesh, Node, Primitive, Scene};
+use crate::scene::{Material, Mesh, Node, Primitive, Scene, TextureSlot};
 use accessor::Accessors;
 use buffers::Buffers;
 use document::Document;
@@ -65,13 +65,16 @@ pub struct ImportOptions<'a> {
     /// `None` takes the file's default scene, or the first.
     pub scene: Option<SceneChoice>,
     pub limits: Limits,
+    /// Leaves out the textures that materials have but never sample: normal maps of unlit ones, emission times zero.
+    /// Materials must not change after that.
+    pub sampled_textures_only: bool,
     /// Told of the stages "read", "decode images" and "build geometry".
     pub progress: &'a dyn Progress,
 }
 
 impl Default for ImportOptions<'_> {
     fn default() -> Self {
-        Self { scene: None, limits: Limits::default(), progress: &Silent }
+        Self { scene: None, limits: Limits::default(), sampled_textures_only: false, progress: &Silent }
     }
 }
 
@@ -80,6 +83,7 @@ impl std::fmt::Debug for ImportOptions<'_> {
         f.debug_struct("ImportOptions")
             .field("scene", &self.scene)
             .field("limits", &self.limits)
+            .field("sampled_textures_only", &self.sampled_textures_only)
             .finish_non_exhaustive()
     }
 }
@@ -168,6 +172,9 @@ fn import_model(
     let chosen = nodes::choose_scene(root, &nodes, options.scene.as_ref(), notes)?;
     let cameras = cameras::import(root, notes)?;
     let mut materials = materials::import(root, notes)?;
+    if options.sampled_textures_only {
+        materials.iter_mut().for_each(forget_what_is_not_sampled);
+    }
     let textures = textures::collect(root, &mut materials, &drawn_materials(root, &nodes, &chosen.roots), notes)?;
     if root.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|primitive| primitive.material.is_none()) {
         materials.push(Material::default());
@@ -193,6 +200,12 @@ fn import_model(
     let scene_names = root.scenes.iter().map(|scene| scene.name.clone()).collect();
     let extensions_used = root.extensions_used.clone();
     Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index, extensions_used })
+}
+
+fn forget_what_is_not_sampled(material: &mut Material) {
+    for slot in TextureSlot::ALL.into_iter().filter(|slot| !material.samples(*slot)).collect::<Vec<_>>() {
+        material.set_texture(slot, None);
+    }
 }
 
 /// Which materials a primitive below `roots` has. No node has two parents.

@@ -10,6 +10,7 @@ use crate::shader::{
     ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Slot, Slots, VertexFeatures,
     forward_slots, texel_function,
 };
+use glam::Vec3;
 use std::fmt::Write;
 
 /// Where the table of the Disney lobes is bound, which a frame has in its material's group.
@@ -116,6 +117,8 @@ fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
         indices: Vec::new(),
         material: 0,
     };
+    // Whatever the numbers are: a search sets them.
+    let material = &Material { emissive_nits: Vec3::ONE, specular: 0.5, ..material.clone() };
     let textures = vec![Texture { image: 0, sampler: Default::default() }];
     let of = Scene { textures, ..Default::default() };
     let material = MaterialFeatures::of(material, &primitive, &of, scene);

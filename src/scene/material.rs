@@ -176,6 +176,22 @@ impl Material {
         TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.texture(slot)?)))
     }
 
+    /// Whether the texture of a slot can change a pixel, whatever the geometry and the light.
+    pub fn samples(&self, slot: TextureSlot) -> bool {
+        let lit = !self.unlit;
+        // Disney's parameters for the dielectric reflection have no textures.
+        let lit_standard = lit && self.disney.is_none();
+        let is_metal = self.metallic == 1.0 && self.texture(TextureSlot::MetallicRoughness).is_none();
+        match slot {
+            TextureSlot::BaseColor => true,
+            TextureSlot::MetallicRoughness | TextureSlot::Normal => lit,
+            TextureSlot::Occlusion => lit && self.occlusion_strength > 0.0,
+            TextureSlot::Emissive => lit && self.emissive_nits != Vec3::ZERO,
+            TextureSlot::Specular | TextureSlot::SpecularColor => lit_standard && self.specular > 0.0 && !is_metal,
+            TextureSlot::Anisotropy => lit_standard && self.anisotropy_strength > 0.0,
+        }
+    }
+
     /// F0 of the dielectric interface to air before tint and weight: ((ior - 1) / (ior + 1))^2, in [0, 1].
     pub fn dielectric_f0(&self) -> f32 {
         ((self.ior - 1.0) / (self.ior + 1.0)).powi(2)

@@ -146,6 +146,9 @@ pub struct MaterialFeatures {
     pub fresnel: FresnelFeature,
     /// The Disney highlight has a direction along the surface, and the primitive has tangents to tell it.
     pub disney_anisotropic: bool,
+    pub emissive: bool,
+    /// The dielectric part has a weight or a tint (KHR_materials_specular).
+    pub specular: bool,
     /// The table of the Disney lobes' albedos is read.
     pub disney_table: bool,
     /// Occlusion is in R of the metallic-roughness texture, which is the occlusion texture too or has been packed with it.
@@ -181,6 +184,8 @@ impl MaterialFeatures {
             fresnel: if lit { FresnelFeature::of(material) } else { FresnelFeature::Schlick },
             disney_anisotropic: disney.is_some_and(|d| d.anisotropic > 0.0) && primitive.tangents.is_some(),
             disney_table: disney.is_some() && light.environment,
+            emissive: shading != Shading::Unlit && material.emissive_nits != glam::Vec3::ZERO,
+            specular: lit && (material.specular, material.specular_color) != (1.0, glam::Vec3::ONE),
             packed_occlusion: false,
             textures: [None; _],
         };
@@ -199,6 +204,8 @@ impl MaterialFeatures {
                 transformed: texture.transform != UvTransform::IDENTITY,
             });
         }
+        let of_specular = |slot| features.texture(slot).is_some();
+        features.specular |= [TextureSlot::Specular, TextureSlot::SpecularColor].into_iter().any(of_specular);
         features.pack_occlusion(material, scene);
         features
     }
@@ -215,23 +222,26 @@ impl MaterialFeatures {
         }
     }
 
+    /// What of the textures that the material samples the geometry and the light let through.
     fn reads(&self, slot: TextureSlot, material: &Material, primitive: &Primitive) -> bool {
-        let lit = self.shading.is_lit();
-        // Disney's parameters for the dielectric reflection have no textures.
-        let reads_specular = self.shading == Shading::Lit && material.specular > 0.0 && material.metallic < 1.0;
-        match slot {
+        let reaches = match slot {
             TextureSlot::BaseColor => self.shading != Shading::EmissiveOnly || self.alpha != Alpha::Opaque,
-            TextureSlot::Emissive => self.shading != Shading::Unlit && material.emissive_nits != glam::Vec3::ZERO,
-            TextureSlot::Normal => lit && primitive.tangents.is_some(),
+            TextureSlot::Emissive => self.emissive,
+            TextureSlot::Normal => self.shading.is_lit() && primitive.tangents.is_some(),
             TextureSlot::Anisotropy => self.anisotropic,
-            TextureSlot::Occlusion => lit && material.occlusion_strength > 0.0,
-            TextureSlot::MetallicRoughness => lit,
-            TextureSlot::Specular | TextureSlot::SpecularColor => reads_specular,
-        }
+            TextureSlot::Specular | TextureSlot::SpecularColor => self.shading == Shading::Lit,
+            TextureSlot::Occlusion | TextureSlot::MetallicRoughness => self.shading.is_lit(),
+        };
+        reaches && material.samples(slot)
     }
 
     pub fn texture(&self, slot: TextureSlot) -> Option<TextureUse> {
         self.textures[slot as usize]
+    }
+
+    /// Whether the environment's light is weakened by a texture.
+    pub fn reads_occlusion(&self) -> bool {
+        self.packed_occlusion || self.texture(TextureSlot::Occlusion).is_some()
     }
 
     /// Whether the specular lobe is the one that `bake::taps` was fitted for: GGX, the same in all directions.
@@ -362,6 +372,8 @@ impl fmt::Display for ForwardFeatures {
             (self.material.fresnel == FresnelFeature::Conductor, "conductor"),
             (lit && self.geometry != Geometry::SmithCorrelated, self.geometry.name()),
             (self.vertex.color, "vertex_color"),
+            (self.material.emissive, "emissive_factor"),
+            (self.material.specular, "specular_factors"),
             (self.material.packed_occlusion, "packed_occlusion"),
             (self.material.alpha == Alpha::Mask, "mask"),
             (self.material.alpha == Alpha::Blend, "blend"),

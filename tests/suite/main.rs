@@ -9,6 +9,7 @@ mod cli;
 mod compare;
 mod culling;
 mod disney;
+mod features;
 mod frames;
 mod goldens;
 mod grazing;

@@ -180,13 +180,13 @@ const IN_FRAMES: &[Mutant] = &[
     fault("lighting/prefiltered.wgsl", " * environment.radiance_scale", ""),
     fault("lighting/lit.wgsl", " * surface.occlusion", ""),
     fault("lighting/lit.wgsl", " + surface.emissive", ""),
-    fault("surface/surface.wgsl", "metallic_roughness.z", "metallic_roughness.x"),
-    fault("surface/surface.wgsl", "metallic_roughness.y", "metallic_roughness.x"),
-    fault("surface/surface.wgsl", "specular_texel(v).w", "specular_texel(v).x"),
-    fault("surface/surface.wgsl", " * specular_color_texel(v).xyz", ""),
-    fault("surface/surface.wgsl", "occlusion_texel(v, metallic_roughness).x", "metallic_roughness.y"),
-    fault("surface/surface.wgsl", "material.occlusion_strength * ", ""),
-    fault("surface/surface.wgsl", " * emissive_texel(v).xyz", ""),
+    fault("surface/reflecting.wgsl", "metallic_roughness.z", "metallic_roughness.x"),
+    fault("surface/reflecting.wgsl", "metallic_roughness.y", "metallic_roughness.x"),
+    fault("surface/dielectric.wgsl", "specular_texel(v).w", "specular_texel(v).x"),
+    fault("surface/dielectric.wgsl", " * specular_color_texel(v).xyz", ""),
+    fault("surface/occlusion.wgsl", "occlusion_texel(v, metallic_roughness).x", "metallic_roughness.y"),
+    fault("surface/occlusion.wgsl", "material.occlusion_strength * ", ""),
+    fault("surface/emission.wgsl", " * emissive_texel(v).xyz", ""),
     fault("surface/surface.wgsl", " * vertex_color(v)", ""),
     fault("surface/normal_map.wgsl", "xyz * (254.0 / 255.0) + 1.0 / 255.0", "xyz * 0.5 + 0.5"),
     fault("surface/normal_map.wgsl", " * v.tangent.w", ""),
@@ -196,7 +196,7 @@ const IN_FRAMES: &[Mutant] = &[
 ];
 
 /// Files that need a frame to be tested and have faults in [`IN_FRAMES`].
-const SEEN_IN_FRAMES: [&str; 19] = [
+const SEEN_IN_FRAMES: [&str; 23] = [
     "lighting/dfg.wgsl",
     "lighting/environment.wgsl",
     "lighting/reflection_mirror.wgsl",
@@ -212,8 +212,12 @@ const SEEN_IN_FRAMES: [&str; 19] = [
     "lighting/shape_anisotropic.wgsl",
     "lighting/shape_isotropic.wgsl",
     "lighting/visibility_anisotropic_mean.wgsl",
+    "surface/dielectric.wgsl",
+    "surface/emission.wgsl",
     "surface/facing_double.wgsl",
+    "surface/occlusion.wgsl",
     "surface/normal_map.wgsl",
+    "surface/reflecting.wgsl",
     "surface/surface.wgsl",
     "surface/tangents_anisotropic.wgsl",
 ];

@@ -1,14 +1,15 @@
 //! Occlusion in the metallic-roughness texture: the picture of two textures, to the bit, with one lookup and less memory.
 
-use crate::support::{draw, front_view, gpu, sphere_scene, white_environment};
-use glam::{Vec2, Vec4};
+use crate::support::{add_light, draw, front_view, gpu, sphere_scene, white_environment};
+use glam::{DVec3, Vec2, Vec4};
 use specula::capture::{CaptureOptions, CapturedFrame};
 use specula::gpu::Gpu;
 use specula::gpu::formats::Precision;
 use specula::gpu_scene::{GpuScene, TextureLevels};
 use specula::renderer::Renderer;
 use specula::scene::{
-    Channel, Image, Input, Material, Pixels, Sampler, Scene, Texture, TextureRef, TextureSlot, UvTransform, View,
+    Channel, Image, Input, LightKind, Material, Pixels, Sampler, Scene, Texture, TextureRef, TextureSlot, UvTransform,
+    View,
 };
 use std::sync::Arc;
 
@@ -48,10 +49,9 @@ fn scene(images: Vec<Image>, occlusion_uv_set: u32) -> Scene {
 }
 
 fn uploaded(gpu: &Gpu, scene: &Scene) -> GpuScene {
-    let scene = Scene { environment: None, ..scene.clone() };
     // Under a lamp, so that there is something to shade.
-    let mut lit = scene.clone();
-    crate::support::add_light(&mut lit, specula::scene::LightKind::Directional, 1.0, glam::DVec3::ZERO);
+    let mut lit = Scene { environment: None, ..scene.clone() };
+    add_light(&mut lit, LightKind::Directional, 1.0, DVec3::ZERO);
     let renderer = Renderer::new(&gpu.device, &gpu.queue);
     let levels = TextureLevels::of(&lit, 4096);
     renderer.upload_with(&gpu.device, &gpu.queue, &lit, levels, None).unwrap()

@@ -46,13 +46,13 @@ const GUARDS: &[(&str, &str, &str)] = &[
     ("lighting/lobes.wgsl", "saturate(dot(lobes.n, l))", "dot(lobes.n, l)"),
     ("surface/surface.wgsl", "saturate(base_color.xyz)", "base_color.xyz"),
     (
-        "surface/surface.wgsl",
+        "surface/dielectric.wgsl",
         "saturate(material.specular * specular_texel(v).w)",
         "material.specular * specular_texel(v).w",
     ),
-    ("surface/surface.wgsl", "saturate(1.0 + material.occlusion", "(1.0 + material.occlusion"),
+    ("surface/occlusion.wgsl", "saturate(1.0 + material.occlusion", "(1.0 + material.occlusion"),
     (
-        "surface/surface.wgsl",
+        "surface/reflecting.wgsl",
         "saturate(material.metallic * metallic_roughness.z)",
         "material.metallic * metallic_roughness.z",
     ),

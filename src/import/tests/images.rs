@@ -2,7 +2,7 @@
 
 use super::builder::*;
 use super::hostile::assert_clean;
-use crate::import::{ImportOptions, model_from_path};
+use crate::import::{ImportOptions, model_from_path, model_from_slice};
 use crate::scene::{Pixels, Sampler, TextureSlot, Wrap};
 use image::ExtendedColorType;
 use serde_json::{Value, json};
@@ -220,4 +220,34 @@ fn what_only_another_scene_shows_is_not_decoded() {
     asset.json["scene"] = json!(0);
     let scene = asset.loaded().scene;
     assert_eq!((scene.images.len(), scene.textures.len(), scene.meshes.len()), (0, 0, 1));
+}
+
+#[test]
+fn textures_that_are_never_sampled_can_be_left_out() {
+    // Damaged on purpose: whoever decodes it fails.
+    let damaged = |slot: &str, material: Value| {
+        let mut asset = with_image(&png(1, 1, ExtendedColorType::L8, &[7]));
+        let view = asset.view(b"\x89PNG\r\n\x1a\nno more");
+        asset.push("images", json!({ "bufferView": view, "mimeType": "image/png" }));
+        asset.push("textures", json!({ "source": 1 }));
+        asset.json["materials"][0][slot] = json!({ "index": 1 });
+        let members = material.as_object().unwrap().clone();
+        members.into_iter().for_each(|(name, value)| asset.json["materials"][0][name.as_str()] = value);
+        asset
+    };
+    let load_with = |asset: &Asset, options: &ImportOptions<'_>| model_from_slice(&asset.glb(), "model", None, options);
+    let sampled = ImportOptions { sampled_textures_only: true, ..Default::default() };
+    let unlit = json!({ "extensions": { "KHR_materials_unlit": {} } });
+    let black = json!({});
+    let weak = json!({ "occlusionTexture": { "index": 1, "strength": 0.0 } });
+    for (slot, material) in [("normalTexture", unlit), ("emissiveTexture", black), ("occlusionTexture", weak)] {
+        let asset = damaged(slot, material);
+        assert!(load_with(&asset, &ImportOptions::default()).is_err(), "{slot}");
+        assert_eq!(load_with(&asset, &sampled).unwrap().scene.images.len(), 1, "{slot}");
+    }
+    let bright = json!({ "emissiveFactor": [1.0, 1.0, 1.0] });
+    for (slot, material) in [("normalTexture", json!({})), ("emissiveTexture", bright), ("occlusionTexture", json!({}))]
+    {
+        assert!(load_with(&damaged(slot, material), &sampled).is_err(), "{slot}");
+    }
 }
