@@ -71,7 +71,7 @@ pub enum Order {
     BackToFront,
 }
 
-/// Patches that fill the picture, one behind the other, of so many materials with as many pipelines as [`material`] has.
+/// Patches that fill the picture, one behind the other, of so many materials with six pipelines at most.
 pub fn sheets(order: Order, materials: usize) -> Scene {
     let mut scene = Scene { meshes: Vec::new(), ..lit() };
     of_materials(&mut scene, materials);
