@@ -6,7 +6,7 @@
 
 const TAPS_COLUMNS: f32 = 17.0;
 const TAPS_ROWS: f32 = 33.0;
-const TAPS_TILES: f32 = 10.0;
+const TAPS_TILES: f32 = 14.0;
 // Places and spreads as the table has them, and weights of irradiance's parts.
 const TAPS_SCALE: f32 = 8.0;
 const TAPS_BIAS: f32 = -4.0;

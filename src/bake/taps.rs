@@ -7,14 +7,14 @@
 //! `assets/taps.bin` is the bare texture: [`TILES`] tiles of [`COLUMNS`] x [`ROWS`] texels above one another, each with
 //! sqrt(NoV) to the right from 0 to 1 and the level of the specular maps downward from 0 to 8, end points on texel
 //! centres. A texel is four little-endian unorm16: places and spreads as x / 8 + 1/2, levels as an eighth, shares of taps
-//! as they are, weights of irradiance's parts as x / 4 + 1/2. What the shares leave of 1 is irradiance's. For one, two and
-//! three taps in turn, k being their number, a texel each:
+//! as they are, weights of irradiance's parts as x / 4 + 1/2. What the shares leave of 1 is irradiance's. For two, three and
+//! four taps in turn, k being their number, a texel each:
 //!
 //! | | |
 //! |---|---|
 //! | k times | place, level, spread of a tap, and its share for F0 = 1 |
 //! | once | the weights of degree 1 and 2, the shares of the first two taps for F0 = 0.04 |
-//! | once, of three | the share of the third tap for F0 = 0.04, nothing |
+//! | once, of more than two | the shares of the third and fourth tap for F0 = 0.04, nothing |
 
 mod fit;
 mod grid;
@@ -36,17 +36,19 @@ pub const COLUMNS: usize = 17;
 /// Steps of a quarter of a level.
 pub const ROWS: usize = 33;
 /// Tiles of the table.
-pub const TILES: usize = 10;
+pub const TILES: usize = 14;
 
 /// Above, taps mix with the mirror image, all to the same share, and are placed as at level 1.
 const FITTED_ROWS: Range<usize> = 4..ROWS;
-/// Where the tiles of one, two and three taps begin.
-const FIRST_TILES: [usize; 3] = [0, 2, 5];
+/// Taps of the tiers from draft to high.
+const TAPS: [usize; 3] = [2, 3, 4];
+/// Where their tiles begin.
+const FIRST_TILES: [usize; 3] = [0, 3, 8];
 const CHANNELS: usize = 4;
 const LAST_LEVEL: f64 = 8.0;
-/// What [`check`] lets searches gain on average, in shares of the variance of what is seen, with one, two and three taps: a
+/// What [`check`] lets searches gain on average, in shares of the variance of what is seen, for each number of taps: a
 /// quarter more than measured. Texels that suit all lobes around them are not the best for one.
-const LARGEST_GAINS: [f64; 3] = [2.7e-3, 1.65e-3, 6.7e-4];
+const LARGEST_GAINS: [f64; 3] = [1.65e-3, 6.7e-4, 4.6e-4];
 
 static EMBEDDED: &[u8; COLUMNS * ROWS * TILES * CHANNELS * 2] = include_bytes!("../../assets/taps.bin");
 
@@ -74,7 +76,7 @@ fn nov_of_column(column: f64) -> f64 {
 pub fn bake() -> Vec<u16> {
     let kernels = Kernels::new();
     let lobes = Lobes::new(&kernels);
-    let sets = [1, 2, 3].map(|count| lobes.fit(count));
+    let sets = lobes.fit(TAPS);
     let texels = |y: usize| {
         let (tile, row) = (y / ROWS, y % ROWS);
         let sets = &sets;
@@ -103,7 +105,7 @@ fn texel(tile: usize, sets: &[Shared; 3]) -> [f64; CHANNELS] {
     }
     let share = |k: usize| dielectric.get(k).copied().unwrap_or(0.0);
     if tile > taps.len() {
-        return [share(2), 0.0, 0.0, 0.0];
+        return [share(2), share(3), 0.0, 0.0];
     }
     let [linear, quadratic] = parts.map(|part| part / 4.0 + 0.5);
     [linear, quadratic, share(0), share(1)]
@@ -120,13 +122,13 @@ fn stored(values: &[u16], row: usize, column: usize) -> [Shared; 3] {
         level: level * LAST_LEVEL,
         spread: (spread - 0.5) * 2.0 * PLACE_MAX,
     };
-    [1, 2, 3].map(|count| {
-        let first = FIRST_TILES[count - 1];
+    [0, 1, 2].map(|set| {
+        let (first, count) = (FIRST_TILES[set], TAPS[set]);
         let texels: Vec<_> = (first..first + count).map(texel).collect();
         let [linear, quadratic, one, two] = texel(first + count);
-        let three = if count > 2 { texel(first + count + 1)[0] } else { 0.0 };
+        let [three, four, ..] = if count > 2 { texel(first + count + 1) } else { [0.0; CHANNELS] };
         Shared {
-            shares: [texels.iter().map(|texel| texel[3]).collect(), [one, two, three][..count].to_vec()],
+            shares: [texels.iter().map(|texel| texel[3]).collect(), [one, two, three, four][..count].to_vec()],
             taps: texels.into_iter().map(tap).collect(),
             parts: [linear, quadratic].map(|part| (part - 0.5) * 4.0),
         }

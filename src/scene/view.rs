@@ -79,12 +79,12 @@ impl Geometry {
 pub enum Quality {
     /// One lookup in the mirror direction (Karis 2013): the baseline.
     SplitSum,
-    /// One fitted lookup a lobe.
+    /// Two fitted lookups a lobe; one for a lobe that is longer than wide.
     Draft,
-    /// Two fitted lookups; three or five for a lobe that is longer than wide.
+    /// Three fitted lookups; three or five for a lobe that is longer than wide.
     #[default]
     Standard,
-    /// Three fitted lookups; five for a lobe that is longer than wide.
+    /// Four fitted lookups; five for a lobe that is longer than wide.
     High,
 }
 

@@ -295,7 +295,7 @@ const IN_TIERS: &[Mutant] = &[
     fault("lighting/taps.wgsl", "(lobes.single_scatter - dielectric)", "lobes.single_scatter"),
     fault("lighting/reflection_draft.wgsl", "vec3f(others.z)", "vec3f(one.w)"),
     fault("lighting/reflection_standard.wgsl", "vec3f(others.z), vec3f(one.w)", "vec3f(one.w), vec3f(others.z)"),
-    fault("lighting/reflection_standard.wgsl", "taps_texel(4.0, plane)", "taps_texel(1.0, plane)"),
+    fault("lighting/reflection_standard.wgsl", "taps_texel(4.0, plane)", "taps_texel(3.0, plane)"),
     fault("lighting/reflection_high.wgsl", "vec3f(others.w)", "vec3f(others.z)"),
     fault("lighting/reflection_high.wgsl", "tap(plane, three.xyz)", "tap(plane, two.xyz)"),
 ];

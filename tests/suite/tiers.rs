@@ -242,11 +242,11 @@ impl Tiers {
         // Errors measured on llvmpipe, times 1.1. The smooth one shows how a sun is handed over from the mirror level.
         let spheres = vec![
             ("smooth metal", sphere(metal(0.075)), [0.097; 3]),
-            ("metal", sphere(metal(0.1)), [0.0247; 3]),
-            ("rough metal", sphere(metal(0.2)), [0.013, 0.0087, 0.0085]),
-            ("rougher metal", sphere(metal(0.5)), [0.0482, 0.0153, 0.0074]),
-            ("dielectric", sphere(dielectric(0.6)), [0.0859, 0.0168, 0.0099]),
-            ("rough dielectric", sphere(dielectric(1.0)), [0.0374, 0.0342, 0.0319]),
+            ("metal", sphere(metal(0.1)), [0.0243; 3]),
+            ("rough metal", sphere(metal(0.2)), [0.0088, 0.0085, 0.0084]),
+            ("rougher metal", sphere(metal(0.5)), [0.0159, 0.0074, 0.0071]),
+            ("dielectric", sphere(dielectric(0.6)), [0.0172, 0.0099, 0.0086]),
+            ("rough dielectric", sphere(dielectric(1.0)), [0.0374, 0.0319, 0.0319]),
         ];
         Self::new(&image, spheres)
     }

@@ -57,13 +57,36 @@ impl<'a> Lobes<'a> {
         Self { samples: (0..count).into_par_iter().map(sample).collect() }
     }
 
-    /// `count` taps for every texel that is fitted, row by row.
-    pub(super) fn fit(&self, count: usize) -> Vec<Shared> {
-        let mut grid = Grid::uniform(&self.first(count));
-        for (rows, columns, steps) in GRIDS {
-            grid = self.descended(&grid.resampled(rows, columns), steps);
-        }
-        (0..grid.len()).map(|i| Shared::from_variables(&grid.held(i)).with_bounded_shares()).collect()
+    /// For each of `counts`, which ascend by one, taps for every texel that is fitted, row by row. They are sought from
+    /// random starts, and again from what was found for one tap less.
+    pub(super) fn fit<const N: usize>(&self, counts: [usize; N]) -> [Vec<Shared>; N] {
+        let mut fewer: Option<Grid> = None;
+        counts.map(|count| {
+            let new = self.refined(Grid::uniform(&self.first(count)), &GRIDS);
+            let best = match fewer.take() {
+                None => new,
+                Some(fewer) => self.better(new, self.with_one_more(&fewer)),
+            };
+            let grid = fewer.insert(best);
+            (0..grid.len()).map(|i| Shared::from_variables(&grid.held(i)).with_bounded_shares()).collect()
+        })
+    }
+
+    fn refined(&self, grid: Grid, grids: &[(usize, usize, usize)]) -> Grid {
+        grids.iter().fold(grid, |grid, &(rows, columns, steps)| self.descended(&grid.resampled(rows, columns), steps))
+    }
+
+    /// Whichever tap is split, the best of what comes of it.
+    fn with_one_more(&self, grid: &Grid) -> Grid {
+        let (middle, fine) = GRIDS.split_at(3);
+        let (rows, columns, steps) = middle[2];
+        let split = |tap: usize| self.descended(&grid.resampled(rows, columns).split(tap), steps);
+        let best = (1..grid.taps()).fold(split(0), |best, tap| self.better(best, split(tap)));
+        self.refined(best, fine)
+    }
+
+    fn better(&self, a: Grid, b: Grid) -> Grid {
+        if self.cost(&a).0 <= self.cost(&b).0 { a } else { b }
     }
 
     fn descended(&self, grid: &Grid, steps: usize) -> Grid {

@@ -1,7 +1,7 @@
 //! A table of taps while it is sought, of any number of rows and columns.
 
 use super::lobe::PLACE_MAX;
-use super::shared::{Shared, TAP_VARIABLES};
+use super::shared::{Shared, TAP_VARIABLES, variables_of};
 use super::{FITTED_ROWS, LAST_LEVEL, level_of_row};
 
 /// Variables of all nodes, row by row; levels of taps are relative to those of the rows.
@@ -31,6 +31,24 @@ impl Grid {
                 .map(move |k| corners.iter().map(|(node, share)| share * self.variables[node * self.size + k]).sum())
         };
         Self { rows, columns, size: self.size, variables: (0..rows * columns).flat_map(node).collect() }
+    }
+
+    /// The same with one tap as two, half a unit of place apart, that share what it had.
+    pub(super) fn split(&self, tap: usize) -> Self {
+        let node = |node: &[f64]| {
+            let mut shared = Shared::from_variables(node);
+            let mut other = shared.taps[tap];
+            shared.taps[tap].place -= 0.25;
+            other.place += 0.25;
+            shared.taps.push(other);
+            for shares in &mut shared.shares {
+                shares[tap] *= 0.5;
+                shares.push(shares[tap]);
+            }
+            variables_of(&shared)
+        };
+        let variables: Vec<f64> = self.variables.chunks_exact(self.size).flat_map(node).collect();
+        Self { size: variables.len() / self.len(), variables, ..*self }
     }
 
     /// The variables of a node.
@@ -83,7 +101,7 @@ impl Grid {
         first + (last - first) * (node / self.columns) as f64 / (self.rows - 1) as f64
     }
 
-    fn taps(&self) -> usize {
+    pub(super) fn taps(&self) -> usize {
         (self.size - 2) / (TAP_VARIABLES + 2)
     }
 

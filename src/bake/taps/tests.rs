@@ -9,7 +9,7 @@ fn what_is_stored_comes_back() {
         shares: [0.1, 0.05].map(|step| (0..count).map(|k| step * (k + 1) as f64).collect()),
         parts: [-0.3, 0.7],
     };
-    let sets = [taps(1), taps(2), taps(3)];
+    let sets = TAPS.map(taps);
     let mut values = vec![0; COLUMNS * ROWS * TILES * CHANNELS];
     let (row, column) = (7, 3);
     for tile in 0..TILES {
@@ -27,7 +27,7 @@ fn shares_leave_the_mean_no_less_than_nothing() {
     let values = TABLE.values();
     for (row, column) in (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (row, column))) {
         for set in stored(&values, row, column) {
-            // Three shares of 16 bits are rounded.
+            // Shares of 16 bits are rounded.
             let sum = |shares: &Vec<f64>| shares.iter().sum::<f64>();
             assert!(set.shares.iter().all(|shares| sum(shares) < 1.0 + 3e-5), "{row} {column} {set:?}");
         }
