@@ -133,7 +133,7 @@ fn measure(
     let mut light =
         Light { truth: Truth::of_shading(&bare, view, &options), stage: Stage::new(gpu, &bare, cache), view };
     Ok(report::Report::new(report::Parts {
-        model: args.subject.model.display().to_string(),
+        model: args.subject.model().display().to_string(),
         environment: args.subject.environment_name().to_owned(),
         adapter: AdapterStats::of(gpu),
         size_px: view.size_px.to_array(),
