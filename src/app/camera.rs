@@ -302,7 +302,7 @@ mod tests {
                 let mut state = CameraState { orthographic, ..CameraState::default() };
                 for side in [Side::Default, Side::Front, Side::Right, Side::Top, Side::Isometric] {
                     state = state.from_side(&scene, side, SIZE);
-                    let surface = DVec3::from(state.orbit(&around).direction()) * f64::from(radius);
+                    let surface = state.orbit(&around).direction() * f64::from(radius);
                     let (center, seen) = pixel(&state.camera(&around), surface);
                     assert!(seen, "{radius} m from {side:?}: the surface is cut away");
                     assert!((center - 0.5 * SIZE.as_dvec2()).length() < 8.0, "{side:?}: {center}");

@@ -2,10 +2,13 @@
 
 use super::folder;
 use super::loading::{Loaded, LoadedLight, LoadedModel, Loading, Wake, Wanted, WantedLight};
+use super::panel::Inspected;
 use super::shown::{Shown, view_of};
 use super::stage::Stage;
 use super::state::ViewerState;
+use super::truth::Truth;
 use super::viewer::{Effect, Viewer};
+use super::watch::Watch;
 use crate::capture::CaptureError;
 use crate::output;
 use crate::scene::View;
@@ -38,8 +41,13 @@ pub(super) struct Desk {
     pub(super) material: usize,
     /// Models that were open, the last one first.
     pub(super) recent: Vec<PathBuf>,
+    pub(super) inspected: Inspected,
     pub(super) loading: Option<Loading>,
     light: Option<LoadedLight>,
+    pub(super) truth: Option<Truth>,
+    /// Whether a model is read again when its files change.
+    watches: bool,
+    watch: Option<Watch>,
     /// Of the device, once that is open.
     pub(super) max_side: Arc<OnceLock<u32>>,
     wake: Wake,
@@ -47,7 +55,7 @@ pub(super) struct Desk {
 
 impl Desk {
     /// Begins to fetch what `state` names.
-    pub(super) fn new(state: ViewerState, wake: Wake) -> Self {
+    pub(super) fn new(state: ViewerState, watches: bool, wake: Wake) -> Self {
         let (viewer, max_side) = (Viewer::new(state), Arc::default());
         let mut desk = Self {
             viewer,
@@ -55,8 +63,12 @@ impl Desk {
             texts: Texts::default(),
             material: 0,
             recent: Vec::new(),
+            inspected: Inspected::default(),
             loading: None,
             light: None,
+            truth: None,
+            watches,
+            watch: None,
             max_side,
             wake,
         };
@@ -128,6 +140,9 @@ impl Desk {
             self.loading = None;
             self.take(loaded, stage);
         }
+        if self.watch.as_ref().is_some_and(Watch::has_changed) {
+            self.effect(Effect::Reload, None);
+        }
         let wanted = self.wanted_light();
         let has = self.light.as_ref().is_some_and(|light| light.wanted == wanted);
         let comes = self.loading.as_ref().and_then(|loading| loading.wanted.light.as_ref()) == Some(&wanted);
@@ -185,11 +200,18 @@ impl Desk {
         let (image, maps) = self.light.as_ref().and_then(|light| light.panorama.clone()).unzip();
         shown.surround(image, state);
         let opened = stage.open(&mut shown, state, Some(levels), maps);
+        let mut message = None;
+        if self.watches && self.watch.as_ref().is_none_or(|watch| watch.model != path) {
+            match Watch::new(&path, Arc::clone(&self.wake)) {
+                Ok(watch) => self.watch = Some(watch),
+                Err(problem) => message = Some(problem),
+            }
+        }
         self.recent.retain(|other| *other != path);
         self.recent.insert(0, path);
         self.recent.truncate(RECENT);
         self.about = About { warnings, extensions_used };
-        self.viewer.interface.message = None;
+        self.viewer.interface.message = message;
         self.viewer.shown = Some(shown);
         if let Err(error) = opened {
             self.fail(&error);
@@ -209,6 +231,20 @@ impl Desk {
     pub(super) fn fail(&mut self, error: &CaptureError) {
         eprintln!("specula: {error}");
         self.say(error.to_string());
+    }
+
+    /// Keeps the truth beside the picture, where that is wanted.
+    pub(super) fn turn_truth(&mut self, stage: &mut Stage, view: &View) {
+        let wanted = self.viewer.interface.truth;
+        self.truth = self.truth.take().filter(|truth| wanted && truth.is_of(stage, view));
+        let (true, None, Some(shown)) = (wanted, &self.truth, &self.viewer.shown) else {
+            self.truth.iter_mut().for_each(Truth::turn);
+            return;
+        };
+        match Truth::start(stage, &shown.scene, view, Arc::clone(&self.wake)) {
+            Ok(truth) => self.truth = truth,
+            Err(error) => self.fail(&error),
+        }
     }
 
     /// The picture to draw.

@@ -32,7 +32,11 @@ mod surface;
 #[cfg(feature = "view")]
 mod translate;
 #[cfg(feature = "view")]
+mod truth;
+#[cfg(feature = "view")]
 mod viewer;
+#[cfg(feature = "view")]
+mod watch;
 #[cfg(feature = "view")]
 mod window;
 

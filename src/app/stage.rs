@@ -8,7 +8,7 @@ use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, redraw
 use crate::gpu::{Gpu, formats};
 use crate::gpu_scene::{GpuScene, TextureLevels};
 use crate::renderer::{FrameStats, PathChoice, Renderer};
-use crate::scene::{EnvironmentMaps, View};
+use crate::scene::{EnvironmentMaps, RadianceImage, View};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -48,6 +48,8 @@ pub(super) struct Stage {
     painted: Option<Painted>,
     /// Frames drawn so far.
     pub(super) frames: u64,
+    /// Counts what was put on the device: another number, another scene.
+    pub(super) version: u64,
 }
 
 /// A picture that was made in memory.
@@ -71,6 +73,7 @@ impl Stage {
             size_px: [0; 2],
             painted: None,
             frames: 0,
+            version: 0,
         }
     }
 
@@ -84,6 +87,7 @@ impl Stage {
     ) -> Result<(), CaptureError> {
         let Gpu { device, queue, .. } = &self.gpu;
         (self.uploaded, self.applied, self.painted) = (None, None, None);
+        self.version += 1;
         shown.apply(state);
         let max_side = device.limits().max_texture_dimension_2d;
         let levels = levels.unwrap_or_else(|| TextureLevels::of(&shown.scene, max_side));
@@ -117,6 +121,7 @@ impl Stage {
         let Gpu { device, queue, .. } = &self.gpu;
         let Some(previous) = self.uploaded.take() else { return self.open(shown, state, None, self.maps.clone()) };
         self.painted = None;
+        self.version += 1;
         shown.apply(state);
         let light = (self.maps.as_deref(), same_light);
         self.uploaded = Some(self.renderer.upload_again(device, queue, &shown.scene, light, previous)?);
@@ -163,6 +168,14 @@ impl Stage {
             self.painted = Some(Painted { of: view.clone(), pixels, texture });
         }
         Ok(())
+    }
+
+    /// Radiance of the view, whatever of it is shown.
+    pub(super) fn radiance(&mut self, view: &View) -> Result<Option<RadianceImage>, CaptureError> {
+        let (Some(uploaded), Some(target)) = (&mut self.uploaded, &self.target) else { return Ok(None) };
+        let wanted = Wanted { radiance: true, display: false };
+        let pending = submit(&self.gpu, &mut self.renderer, uploaded, view, target, wanted)?;
+        Ok(pending.wait(&self.gpu)?.radiance)
     }
 
     /// Display values of the picture that was drawn last, if there is one.

@@ -6,7 +6,7 @@ use super::keys::{self, Action};
 use super::named;
 use super::shown::{GREY, Shown, is_file};
 use super::state::{BackgroundState, ViewerState};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 use std::path::PathBuf;
 
 /// Two clicks are a double click within this time.
@@ -48,6 +48,8 @@ pub(super) struct Interface {
     pub truth: bool,
     /// Where the truth begins, as a share of the width.
     pub split: f64,
+    /// Errors as colours in place of the truth.
+    pub errors: bool,
     pub fly: bool,
     /// For the user to read.
     pub message: Option<String>,
@@ -62,6 +64,7 @@ impl Default for Interface {
             inspector: false,
             truth: false,
             split: 0.5,
+            errors: false,
             fly: false,
             message: None,
         }
@@ -98,6 +101,12 @@ struct Press {
 impl Viewer {
     pub(super) fn new(state: ViewerState) -> Self {
         Self { state, ..Self::default() }
+    }
+
+    /// The pixel of the picture under the cursor.
+    pub(super) fn pixel(&self) -> Option<UVec2> {
+        let at = self.held.pointer_px.filter(|at| at.min_element() >= 0.0)?.as_uvec2();
+        at.cmplt(self.state.size_px()).all().then_some(at)
     }
 
     /// Whether time moves the camera.

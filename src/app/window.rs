@@ -36,6 +36,8 @@ pub struct ViewOptions {
     /// What is shown first; `model` may name a folder.
     pub state: ViewerState,
     pub request: GpuRequest,
+    /// Whether a model is read again when its files change.
+    pub watch: bool,
     /// Where what the user does is written down.
     pub record: Option<PathBuf>,
     /// What is done in place of a user; then the window is closed.
@@ -71,7 +73,7 @@ pub fn run(options: ViewOptions) -> Result<(), ViewError> {
     let wake = Arc::new(move || proxy.send_event(()).unwrap_or_default());
     let recorder = options.record.as_deref().map(Recorder::create).transpose()?;
     let mut app = App {
-        desk: Desk::new(options.state, wake),
+        desk: Desk::new(options.state, options.watch, wake),
         request: options.request,
         recorder,
         player: options.replay.map(Player::new),
@@ -127,8 +129,13 @@ impl Open {
         Ok(Self { window, screen, stage: Stage::new(gpu), gui, present, blank })
     }
 
-    /// Shows the picture with the panel over it.
-    fn show(&mut self, size_px: [u32; 2], frame: &GuiFrame) -> Result<(), GpuError> {
+    /// Shows the picture with the panel over it, and beyond a share of its width another picture.
+    fn show(
+        &mut self,
+        size_px: [u32; 2],
+        frame: &GuiFrame,
+        other: Option<&(wgpu::TextureView, f64)>,
+    ) -> Result<(), GpuError> {
         let gpu = &self.stage.gpu;
         let Some(texture) = self.screen.next(gpu, size_px)? else {
             self.gui.finish(frame);
@@ -136,7 +143,11 @@ impl Open {
         };
         let target = texture.texture.create_view(&Default::default());
         let left = self.stage.shown().unwrap_or(&self.blank);
-        let presented = Presented { left, right: left, split_px: f32::INFINITY, behind: BEHIND };
+        let (right, split_px) = match other {
+            Some((right, share)) => (right, (share * f64::from(size_px[0])) as f32),
+            None => (left, f32::MAX),
+        };
+        let presented = Presented { left, right, split_px, behind: BEHIND };
         let group = self.present.prepare((&gpu.device, &gpu.queue), &presented);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("window") });
         self.gui.prepare(gpu, &mut encoder, frame);
@@ -192,7 +203,7 @@ impl App {
         for effect in effects {
             let stage = self.open.as_ref().map(|open| &open.stage);
             if !self.desk.effect(effect, stage) {
-                event_loop.exit();
+                self.end(event_loop);
             }
         }
     }
@@ -225,12 +236,20 @@ impl App {
         });
         // What the panel has changed is seen at once.
         self.desk.turn(&mut open.stage);
-        let drawn = self.desk.view().map_or(Ok(()), |view| open.stage.draw(&view));
-        let shown = open.show(size_px, &frame).map_err(CaptureError::from);
+        let (view, mut drawn, mut truth) = (self.desk.view(), Ok(()), None);
+        if let Some(view) = &view {
+            self.desk.turn_truth(&mut open.stage, view);
+            drawn = open.stage.draw(view);
+            let errors = self.desk.viewer.interface.errors;
+            truth = self.desk.truth.as_mut().and_then(|truth| truth.texture(&open.stage, view, errors));
+        }
+        let split = truth.map(|truth| (truth, self.desk.viewer.interface.split));
+        let shown = open.show(size_px, &frame, split.as_ref()).map_err(CaptureError::from);
         let checked = open.stage.gpu.check().map_err(CaptureError::from);
-        if let Err(error) = drawn.and(shown).and(checked)
-            && !open.stage.gpu.is_lost()
-        {
+        if let Err(error) = drawn.and(shown).and(checked) {
+            if open.stage.gpu.is_lost() {
+                return self.recover(event_loop);
+            }
             self.desk.fail(&error);
             self.stale = true;
         }
@@ -267,7 +286,7 @@ impl App {
             return;
         }
         let Some(Recorded { at_s, event }) = player.next() else {
-            return self.end_replay(event_loop);
+            return self.end(event_loop);
         };
         match event {
             InputEvent::Resize { width, height } => {
@@ -294,7 +313,8 @@ impl App {
         }
     }
 
-    fn end_replay(&mut self, event_loop: &ActiveEventLoop) {
+    /// Ends; a replay with its last picture.
+    fn end(&mut self, event_loop: &ActiveEventLoop) {
         if let (Some(path), Some(open)) = (self.screenshot_at_end.take(), &self.open)
             && let Err(problem) = self.desk.screenshot(&open.stage, &path)
         {

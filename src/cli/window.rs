@@ -22,6 +22,9 @@ pub(super) struct WindowArgs {
     /// Part of the name of the adapter to use.
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    /// Read the model again when its files change.
+    #[arg(long)]
+    watch: bool,
     /// Write down what is done, a line of JSON an event.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -49,7 +52,7 @@ pub(super) fn run(args: &WindowArgs) -> Result<(), CliError> {
     let replay = args.replay.as_deref().map(recording).transpose()?;
     let request = GpuRequest { adapter: args.adapter.clone(), backends: None };
     let (record, screenshot_at_end) = (args.record.clone(), args.screenshot_at_end.clone());
-    open_window(ViewOptions { state, request, record, replay, screenshot_at_end })?;
+    open_window(ViewOptions { state, request, watch: args.watch, record, replay, screenshot_at_end })?;
     Ok(())
 }
 

@@ -124,8 +124,10 @@ impl Gpu {
         Ok(Self { info, adapter, device, queue, instance, errors, lost })
     }
 
-    /// Whether the device is gone, and all that was made of it.
+    /// Whether the device is gone, and all that was made of it. Asks the driver.
     pub fn is_lost(&self) -> bool {
+        // What is wrong with a device that cannot be asked shows in the flag, or at the next frame.
+        let _ = self.device.poll(wgpu::PollType::Poll);
         self.lost.load(Ordering::Relaxed)
     }
 

@@ -24,3 +24,5 @@ mod support;
 mod terms;
 mod tiers;
 mod twins;
+#[cfg(feature = "view")]
+mod viewer;

@@ -2,12 +2,15 @@
 
 mod certificate;
 mod file;
+mod inspector;
 mod light;
 mod look;
 mod material;
 mod overlay;
 mod rows;
 mod tree;
+
+pub(super) use inspector::Inspected;
 
 use super::desk::Desk;
 use super::stage::Stage;
@@ -24,6 +27,8 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> Vec<Eff
     }
     overlay::progress(ui, desk);
     overlay::message(ui, desk);
+    overlay::truth(ui, desk);
+    inspector::show(ui, desk, stage);
     overlay::statistics(ui, desk, stage);
     overlay::help(ui, desk);
     effects

@@ -4,10 +4,11 @@ use crate::app::desk::Desk;
 use crate::app::gui::name_place;
 use crate::app::keys;
 use crate::app::stage::Stage;
+use crate::app::truth::{Figures, Truth};
 use egui::{Align2, Area, Frame, Grid, Id, ProgressBar, RichText, ScrollArea, vec2};
 
 /// Something small that floats at a side of the window.
-fn float<R>(ui: &egui::Ui, name: &str, at: Align2, content: impl FnOnce(&mut egui::Ui) -> R) -> R {
+pub(super) fn float<R>(ui: &egui::Ui, name: &str, at: Align2, content: impl FnOnce(&mut egui::Ui) -> R) -> R {
     let inward = vec2(-12.0 * at.x().to_sign(), -12.0 * at.y().to_sign());
     let area = Area::new(Id::unique(name)).anchor(at, inward).order(egui::Order::Foreground);
     area.show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, content).inner).inner
@@ -53,8 +54,9 @@ pub(super) fn help(ui: &egui::Ui, desk: &Desk) {
         return;
     }
     float(ui, "help", Align2::CENTER_CENTER, |ui| {
+        let height = ui.ctx().content_rect().height() - 60.0;
         let lines = keys::MOUSE.iter().map(|(what, text)| ((*what).to_owned(), *text)).chain(keys::help());
-        ScrollArea::vertical().max_height(ui.ctx().content_rect().height() - 60.0).show(ui, |ui| {
+        ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
             Grid::new("help").num_columns(2).striped(true).show(ui, |ui| {
                 for (what, text) in lines {
                     ui.label(RichText::new(what).strong());
@@ -63,6 +65,27 @@ pub(super) fn help(ui: &egui::Ui, desk: &Desk) {
                 }
             });
         });
+    });
+}
+
+/// How far the picture is from the truth beside it.
+pub(super) fn truth(ui: &egui::Ui, desk: &mut Desk) {
+    if !desk.viewer.interface.truth {
+        return;
+    }
+    let figures = desk.truth.as_ref().and_then(Truth::figures);
+    let errors = &mut desk.viewer.interface.errors;
+    float(ui, "truth", Align2::CENTER_BOTTOM, |ui| {
+        ui.set_width(290.0);
+        let Some(Figures { samples, noise, error, is_bound }) = figures else {
+            ui.label("the reference renderer takes its first samples");
+            return;
+        };
+        let at_most = if is_bound { "at most " } else { "" };
+        ui.label(format!("left: rasteriser, {at_most}{:.2} % off (RMS)", 100.0 * error));
+        ui.label(format!("right: reference, {samples} samples, {:.2} % noise", 100.0 * noise));
+        let switch = ui.checkbox(errors, "errors as colours, white from 10 %");
+        name_place(&switch, "truth/errors");
     });
 }
 
