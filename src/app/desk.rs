@@ -228,9 +228,15 @@ impl Desk {
         }
     }
 
-    pub(super) fn fail(&mut self, error: &CaptureError) {
-        eprintln!("specula: {error}");
-        self.say(error.to_string());
+    /// Tells of an error, here and on stderr. Whether it was not known yet.
+    pub(super) fn fail(&mut self, error: &CaptureError) -> bool {
+        let message = error.to_string();
+        let is_new = self.viewer.interface.message.as_ref() != Some(&message);
+        if is_new {
+            eprintln!("specula: {message}");
+            self.say(message);
+        }
+        is_new
     }
 
     /// Keeps the truth beside the picture, where that is wanted.
@@ -243,7 +249,9 @@ impl Desk {
         };
         match Truth::start(stage, &shown.scene, view, Arc::clone(&self.wake)) {
             Ok(truth) => self.truth = truth,
-            Err(error) => self.fail(&error),
+            Err(error) => {
+                self.fail(&error);
+            }
         }
     }
 

@@ -42,6 +42,7 @@ impl Named for Option<Channel> {
 }
 
 /// The choice after this one, or the one before it.
+#[cfg(feature = "view")]
 pub(super) fn next<T: Named + PartialEq>(current: T, backward: bool) -> T {
     let choices = T::choices();
     let index = choices.iter().position(|(_, choice)| *choice == current).unwrap_or(0);

@@ -139,3 +139,66 @@ pub fn environment_image(source: &str) -> Result<Option<EnvironmentImage>, Impor
         path => Some(environment_from_path(Path::new(path))?),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::edit::MaterialEdit;
+    use crate::scene::shapes::sphere;
+    use crate::scene::{LightKind, Mesh, Node};
+    use glam::DMat4;
+
+    /// A ball that hangs on a node with a light, which hangs on a root.
+    fn shown() -> Shown {
+        let node = |child: usize| Node { parent_from_node: DMat4::IDENTITY, children: vec![child], ..Node::default() };
+        let light = Light { name: None, kind: LightKind::Directional, color: DVec3::ONE, intensity: 3.0 };
+        let scene = Scene {
+            nodes: vec![
+                node(1),
+                Node { light: Some(0), ..node(2) },
+                Node { mesh: Some(0), children: vec![], ..node(0) },
+            ],
+            roots: vec![0],
+            meshes: vec![Mesh { name: None, primitives: vec![sphere(1.0, 16, 0)] }],
+            materials: vec![Material::default()],
+            lights: vec![light],
+            ..Scene::default()
+        };
+        Shown::new(scene, &ViewerState::default())
+    }
+
+    #[test]
+    fn changes_come_and_go() {
+        let mut shown = shown();
+        let mut state = ViewerState::default();
+        let edit = MaterialEdit { metallic: 0.25, ..MaterialEdit::of(&Material::default()) };
+        state.materials.insert(0, edit);
+        state.light_factors.insert(0, 2.0);
+        // Of what is not there nobody asks for anything.
+        state.light_factors.insert(9, 2.0);
+        state.hidden_nodes = [2, 9].into();
+        shown.apply(&state);
+        shown.apply(&state);
+        assert_eq!((shown.scene.materials[0].metallic, shown.scene.lights[0].intensity), (0.25, 6.0));
+        assert_eq!((shown.scene.instances().len(), shown.scene.lights_in_world().len()), (0, 1));
+        assert!(shown.has_content(2) && !shown.has_content(0));
+        state.hidden_nodes = [0].into();
+        shown.apply(&state);
+        assert_eq!((shown.scene.instances().len(), shown.scene.lights_in_world().len()), (0, 0));
+        shown.apply(&ViewerState::default());
+        assert_eq!((shown.scene.materials[0].metallic, shown.scene.lights[0].intensity), (1.0, 3.0));
+        assert_eq!((shown.scene.instances().len(), shown.scene.lights_in_world().len()), (1, 1));
+    }
+
+    #[test]
+    fn backgrounds_follow_the_panorama() {
+        let shown = shown();
+        let mut state = ViewerState::default();
+        let background = |state: &ViewerState| view_of(state, &shown.around).background;
+        assert_eq!(background(&state), Background::Color(Vec3::splat(GREY)));
+        state.environment.source = "sky.hdr".into();
+        assert_eq!(background(&state), Background::Environment);
+        state.look.background = BackgroundState::Transparent;
+        assert_eq!(background(&state), Background::Transparent);
+    }
+}

@@ -11,6 +11,7 @@ use crate::renderer::{FrameStats, PathChoice, Renderer};
 use crate::scene::{EnvironmentMaps, RadianceImage, View};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use std::time::Instant;
 
 /// What of a state is part of the uploaded scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +49,9 @@ pub(super) struct Stage {
     painted: Option<Painted>,
     /// Frames drawn so far.
     pub(super) frames: u64,
+    /// How long the last frame took, from its plan until the device was done, milliseconds. Only of frames that were
+    /// waited for.
+    pub(super) frame_ms: Option<f64>,
     /// Counts what was put on the device: another number, another scene.
     pub(super) version: u64,
 }
@@ -73,6 +77,7 @@ impl Stage {
             size_px: [0; 2],
             painted: None,
             frames: 0,
+            frame_ms: None,
             version: 0,
         }
     }
@@ -129,8 +134,8 @@ impl Stage {
         Ok(())
     }
 
-    /// Draws the view, if it is not what was drawn last.
-    pub(super) fn draw(&mut self, view: &View) -> Result<(), CaptureError> {
+    /// Draws the view, if it is not what was drawn last. `timed` waits until that is done.
+    pub(super) fn draw(&mut self, view: &View, timed: bool) -> Result<(), CaptureError> {
         if self.size_px != view.size_px.to_array() {
             (self.target, self.painted) = (None, None);
             self.size_px = view.size_px.to_array();
@@ -139,8 +144,13 @@ impl Stage {
             Some(target) => target,
             None => CaptureTarget::new(&self.gpu, view, CaptureOptions::default())?,
         };
-        let drawn = self.draw_into(view, &target);
+        let (began, before) = (Instant::now(), self.frames);
+        let mut drawn = self.draw_into(view, &target);
         self.target = Some(target);
+        if timed && self.frames > before {
+            drawn = drawn.and_then(|()| Ok(self.gpu.wait()?));
+            self.frame_ms = Some(1e3 * began.elapsed().as_secs_f64());
+        }
         drawn
     }
 

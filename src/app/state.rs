@@ -214,3 +214,67 @@ impl ViewerState {
         checks.into_iter().find(|(holds, ..)| !holds).map_or(Ok(()), |(_, at, problem)| Err((at, problem)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::camera::Orbit;
+
+    fn written(state: &str) -> Result<ViewerState, StateError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("state.json");
+        std::fs::write(&path, state).unwrap();
+        ViewerState::read(&path)
+    }
+
+    fn state() -> ViewerState {
+        // Numbers that need all their digits.
+        let orbit = Orbit {
+            target: [0.1 + 0.2, -1e-9, 1.0 / 3.0],
+            theta_rad: 2.0_f64.sqrt(),
+            phi_rad: 1.1,
+            distance_m: 1e6 / 7.0,
+        };
+        let camera = CameraState { pose: Some(Pose::Orbit(orbit)), ..CameraState::default() };
+        ViewerState {
+            model: Some("a model.glb".into()),
+            camera,
+            materials: [(3, MaterialEdit::of(&Default::default()))].into(),
+            hidden_nodes: [1, 7].into(),
+            light_factors: [(0, 1.0 / 3.0)].into(),
+            bookmarks: [(2, CameraState { pose: Some(Pose::File(1)), ..camera })].into(),
+            look: Look { debug_view: Channel::by_name("normal"), exposure_ev: 0.1 + 1.0 / 3.0, ..Look::default() },
+            ..ViewerState::default()
+        }
+    }
+
+    #[test]
+    fn states_are_read_to_the_bit() {
+        assert_eq!(written(&state().to_json()).unwrap(), state());
+        assert_eq!(written(&ViewerState::default().to_json()).unwrap(), ViewerState::default());
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_place() {
+        let json = state().to_json();
+        for (from, to, problem) in [
+            ("specula-state/1", "specula-state/9", "schema: expected specula-state/1"),
+            ("\"fov_deg\": 35.0", "\"fov_deg\": 180.0", "camera.fov_deg: expected degrees between 0 and 180"),
+            ("\"phi_rad\": 1.1", "\"phi_rad\": 4", "camera.pose: expected finite numbers"),
+            (
+                "\"neutral\",\n    \"background\"",
+                "\"film\",\n    \"background\"",
+                "look.tone_map: `film` is none of neutral, aces",
+            ),
+            ("\"normal\"", "\"normals\"", "look.debug_view: `normals` is none of none, base-color"),
+            ("\"metallic\": 1.0", "\"metallic\": 1.5", "materials: expected parameters within"),
+            ("\"ior\"", "\"index\"", "materials.3"),
+            ("\"intensity\": 1.0", "\"intensity\": -1.0", "environment.intensity: expected a number from 0 up"),
+        ] {
+            assert!(json.contains(from), "{from} is not in {json}");
+            let error = written(&json.replacen(from, to, 1)).unwrap_err().to_string();
+            assert!(error.contains(problem) && !error.contains('\n'), "{to}: {error}");
+        }
+        assert!(ViewerState::read(Path::new("no/such.json")).unwrap_err().to_string().contains("cannot read"));
+    }
+}

@@ -103,6 +103,13 @@ impl Viewer {
         Self { state, ..Self::default() }
     }
 
+    /// The events that let go of all that is held, for when nobody will say so.
+    pub(super) fn releases(&self) -> Vec<InputEvent> {
+        let key = |key: &String| InputEvent::Key { key: key.clone(), pressed: false, text: None };
+        let button = |button: &Button| InputEvent::Button { button: *button, pressed: false };
+        self.held.keys.iter().map(key).chain(self.held.buttons.iter().map(button)).collect()
+    }
+
     /// The pixel of the picture under the cursor.
     pub(super) fn pixel(&self) -> Option<UVec2> {
         let at = self.held.pointer_px.filter(|at| at.min_element() >= 0.0)?.as_uvec2();

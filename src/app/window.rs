@@ -239,7 +239,7 @@ impl App {
         let (view, mut drawn, mut truth) = (self.desk.view(), Ok(()), None);
         if let Some(view) = &view {
             self.desk.turn_truth(&mut open.stage, view);
-            drawn = open.stage.draw(view);
+            drawn = open.stage.draw(view, self.desk.viewer.interface.statistics);
             let errors = self.desk.viewer.interface.errors;
             truth = self.desk.truth.as_mut().and_then(|truth| truth.texture(&open.stage, view, errors));
         }
@@ -250,11 +250,14 @@ impl App {
             if open.stage.gpu.is_lost() {
                 return self.recover(event_loop);
             }
-            self.desk.fail(&error);
-            self.stale = true;
+            // The next frame says so; that it fails like this one changes nothing any more.
+            if self.desk.fail(&error) {
+                self.due = Some(Instant::now());
+            }
         }
         if frame.again < NEVER {
-            self.due = Some(Instant::now() + frame.again);
+            let again = Instant::now() + frame.again;
+            self.due = Some(self.due.map_or(again, |due| due.min(again)));
         }
         self.do_effects(event_loop, effects);
     }
@@ -388,6 +391,10 @@ impl ApplicationHandler for App {
                 if let Some(open) = &mut self.open {
                     open.gui.set_scale(scale_factor);
                 }
+                self.refresh();
+            }
+            WindowEvent::Focused(false) if self.player.is_none() => {
+                self.desk.viewer.releases().iter().for_each(|event| self.happened(event_loop, event));
                 self.refresh();
             }
             WindowEvent::Occluded(false) | WindowEvent::Focused(_) => self.refresh(),

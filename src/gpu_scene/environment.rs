@@ -33,17 +33,8 @@ pub struct Panorama {
 }
 
 impl GpuEnvironment {
+    /// With the textures of the `previous` one, if that was made of the same image and maps.
     pub(crate) fn new(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        environment: &Environment,
-        maps: &EnvironmentMaps,
-    ) -> Result<Self, UploadError> {
-        Self::after(device, queue, environment, maps, None)
-    }
-
-    /// With the textures of the `previous` one, which was made of the same image and maps.
-    pub(crate) fn after(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         environment: &Environment,

@@ -137,7 +137,7 @@ impl GpuScene {
         textures.forget_levels();
         let environment = match (features.environment, &scene.environment, maps) {
             (true, Some(environment), Some(maps)) => {
-                Some(GpuEnvironment::after(device, queue, environment, maps, light)?)
+                Some(GpuEnvironment::new(device, queue, environment, maps, light)?)
             }
             (true, ..) => return Err(UploadError::MissingMaps),
             (false, ..) => None,

@@ -99,6 +99,9 @@ pub(super) fn statistics(ui: &egui::Ui, desk: &Desk, stage: &Stage) {
     float(ui, "statistics", Align2::LEFT_BOTTOM, |ui| {
         ui.label(stage.gpu.description());
         ui.label(format!("{width} x {height}, {} path, frame {}", stats.path.name(), stage.frames));
+        if let Some(milliseconds) = stage.frame_ms {
+            ui.label(format!("{milliseconds:.1} ms for the last frame that was timed"));
+        }
         ui.label(format!("{} draws, {} triangles, {} pipelines", stats.draws, stats.triangles, stats.pipelines.len()));
     });
 }

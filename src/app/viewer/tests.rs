@@ -118,6 +118,16 @@ fn flying_takes_keys_and_time() {
 }
 
 #[test]
+fn what_is_held_can_be_let_go() {
+    let mut viewer = viewer();
+    feed(&mut viewer, &[press("V"), press("W"), pointer(9.0, 9.0), button(Button::Left, true)]);
+    assert!(viewer.is_flying());
+    let releases = viewer.releases();
+    feed(&mut viewer, &releases);
+    assert!(!viewer.is_flying() && viewer.releases().is_empty());
+}
+
+#[test]
 fn bookmarks_and_dropped_files() {
     let mut viewer = viewer();
     let shift = |shift| InputEvent::Modifiers(Modifiers { shift, ..Modifiers::default() });
