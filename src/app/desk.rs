@@ -220,6 +220,8 @@ impl Desk {
 
     /// Puts what is shown on another device.
     pub(super) fn move_to(&mut self, stage: &mut Stage) {
+        // Its pictures are on the one that is gone.
+        self.truth = None;
         let (_, maps) = self.light.as_ref().and_then(|light| light.panorama.clone()).unzip();
         if let Some(shown) = &mut self.viewer.shown
             && let Err(error) = stage.open(shown, &self.viewer.state, None, maps)

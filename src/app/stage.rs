@@ -4,11 +4,12 @@ use super::channel_picture::{in_units, picture};
 use super::edit::MaterialEdit;
 use super::shown::Shown;
 use super::state::ViewerState;
-use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, redraw, submit};
+use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, capture_pixel, redraw, submit};
 use crate::gpu::{Gpu, formats};
 use crate::gpu_scene::{GpuScene, TextureLevels};
 use crate::renderer::{FrameStats, PathChoice, Renderer};
 use crate::scene::{EnvironmentMaps, RadianceImage, View};
+use glam::{UVec2, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Instant;
@@ -178,6 +179,15 @@ impl Stage {
             self.painted = Some(Painted { of: view.clone(), pixels, texture });
         }
         Ok(())
+    }
+
+    /// What the shaders make of the middle of one pixel: radiance, cd/m2, multiplied with coverage, and that.
+    pub(super) fn pixel(&mut self, view: &View, pixel: UVec2) -> Result<Option<Vec4>, CaptureError> {
+        let Some(uploaded) = &mut self.uploaded else { return Ok(None) };
+        let view = View { channel: None, ..view.clone() };
+        let target = CaptureTarget::new(&self.gpu, &view, CaptureOptions { samples: 1, ..Default::default() })?;
+        let captured = capture_pixel(&self.gpu, &mut self.renderer, uploaded, &view, &target, pixel)?;
+        Ok(Some(captured.radiance))
     }
 
     /// Radiance of the view, whatever of it is shown.

@@ -66,7 +66,11 @@ pub enum ViewError {
 /// # Errors
 /// When there is no window system or no device that can draw in a window, or a replay cannot go on.
 pub fn run(options: ViewOptions) -> Result<(), ViewError> {
-    let no_window = |error: winit::error::EventLoopError| ViewError::NoWindow(error.to_string());
+    let no_window = |error: winit::error::EventLoopError| {
+        // Before the reason stands the place in winit's code.
+        let text = error.to_string();
+        ViewError::NoWindow(text.rsplit(": ").next().unwrap_or(&text).to_owned())
+    };
     let event_loop = EventLoop::<()>::with_user_event().build().map_err(no_window)?;
     let proxy = event_loop.create_proxy();
     // A window that is gone needs no waking.
@@ -236,17 +240,14 @@ impl App {
         });
         // What the panel has changed is seen at once.
         self.desk.turn(&mut open.stage);
-        let (view, mut drawn, mut truth) = (self.desk.view(), Ok(()), None);
-        if let Some(view) = &view {
-            self.desk.turn_truth(&mut open.stage, view);
-            drawn = open.stage.draw(view, self.desk.viewer.interface.statistics);
-            let errors = self.desk.viewer.interface.errors;
-            truth = self.desk.truth.as_mut().and_then(|truth| truth.texture(&open.stage, view, errors));
+        let (drawn, split) = draw_picture(&mut self.desk, &mut open.stage);
+        let asked = ask_shaders(&mut self.desk, &mut open.stage);
+        if asked.as_ref().is_ok_and(|is_new| *is_new) {
+            self.due = Some(Instant::now());
         }
-        let split = truth.map(|truth| (truth, self.desk.viewer.interface.split));
         let shown = open.show(size_px, &frame, split.as_ref()).map_err(CaptureError::from);
         let checked = open.stage.gpu.check().map_err(CaptureError::from);
-        if let Err(error) = drawn.and(shown).and(checked) {
+        if let Err(error) = drawn.and(asked).and(shown).and(checked) {
             if open.stage.gpu.is_lost() {
                 return self.recover(event_loop);
             }
@@ -354,6 +355,21 @@ impl App {
         }
         self.input(event_loop, event, at_s);
     }
+}
+
+/// Draws what the state asks for. What is shown beyond a share of the width, and that share, where there is something.
+fn draw_picture(desk: &mut Desk, stage: &mut Stage) -> (Result<(), CaptureError>, Option<(wgpu::TextureView, f64)>) {
+    let Some(view) = desk.view() else { return (Ok(()), None) };
+    desk.turn_truth(stage, &view);
+    let interface = &desk.viewer.interface;
+    let drawn = stage.draw(&view, interface.statistics);
+    let truth = desk.truth.as_mut().and_then(|truth| truth.texture(stage, &view, interface.errors));
+    (drawn, truth.map(|truth| (truth, interface.split)))
+}
+
+/// Asks the shaders about the pixel that is looked into. Whether there is something new to show.
+fn ask_shaders(desk: &mut Desk, stage: &mut Stage) -> Result<bool, CaptureError> {
+    if desk.viewer.interface.inspector { desk.inspected.ask(stage) } else { Ok(false) }
 }
 
 impl ApplicationHandler for App {

@@ -1,12 +1,13 @@
-//! What made the pixel under the cursor, by the reference renderer.
+//! What made the pixel under the cursor: by the reference renderer, and the sum by the shaders.
 
 use super::overlay::float;
 use crate::app::desk::Desk;
 use crate::app::stage::Stage;
+use crate::capture::CaptureError;
 use crate::reference::inspect::Inspector;
 use crate::scene::{Scene, View};
 use egui::{Align2, Grid};
-use glam::{DVec3, UVec2};
+use glam::{DVec3, UVec2, Vec4};
 use std::time::Duration;
 
 /// The pointer has to rest for so long: scenes may be large.
@@ -22,6 +23,17 @@ pub(in crate::app) struct Inspected {
     /// The view and the version of the scene that the lines are of.
     of: Option<(View, u64)>,
     lines: Vec<(String, String)>,
+    /// What the shaders make of it, once they were asked.
+    by_shaders: Option<Vec4>,
+}
+
+impl Inspected {
+    /// Asks the shaders about the pixel, where that has not been done. Whether there is something new to show.
+    pub(in crate::app) fn ask(&mut self, stage: &mut Stage) -> Result<bool, CaptureError> {
+        let (Some((view, _)), None) = (&self.of, self.by_shaders) else { return Ok(false) };
+        self.by_shaders = stage.pixel(view, self.pixel)?;
+        Ok(self.by_shaders.is_some())
+    }
 }
 
 pub(super) fn show(ui: &egui::Ui, desk: &mut Desk, stage: &Stage) {
@@ -31,7 +43,7 @@ pub(super) fn show(ui: &egui::Ui, desk: &mut Desk, stage: &Stage) {
     let Some(shown) = &desk.viewer.shown else { return };
     let (now_s, inspected) = (ui.input(|input| input.time), &mut desk.inspected);
     if inspected.pixel != pixel {
-        *inspected = Inspected { pixel, since_s: now_s, of: None, lines: inspected.lines.clone() };
+        *inspected = Inspected { pixel, since_s: now_s, of: None, by_shaders: None, ..inspected.clone() };
     }
     let is_new = inspected.of.as_ref().is_none_or(|(of, version)| (of, *version) != (&view, stage.version));
     let rested_s = now_s - inspected.since_s;
@@ -39,13 +51,18 @@ pub(super) fn show(ui: &egui::Ui, desk: &mut Desk, stage: &Stage) {
         ui.ctx().request_repaint_after(Duration::from_secs_f64((REST_S - rested_s).max(0.01)));
     } else if is_new {
         inspected.lines = lines(&shown.scene, &view, pixel);
-        inspected.of = Some((view, stage.version));
+        (inspected.of, inspected.by_shaders) = (Some((view, stage.version)), None);
     }
     float(ui, "inspector", Align2::LEFT_TOP, |ui| {
         Grid::new("inspector").num_columns(2).show(ui, |ui| {
             for (name, value) in &inspected.lines {
                 ui.weak(name);
                 ui.monospace(value);
+                ui.end_row();
+            }
+            if let Some(radiance) = inspected.by_shaders.filter(|radiance| radiance.w > 0.0) {
+                ui.weak("by the shaders");
+                ui.monospace(vector((radiance.truncate() / radiance.w).as_dvec3()));
                 ui.end_row();
             }
         });
@@ -87,7 +104,7 @@ fn lines(scene: &Scene, view: &View, pixel: UVec2) -> Vec<(String, String)> {
         add("from the environment", vector(leaving.environment.mean.iter().sum()));
     }
     add("emitted", vector(leaving.emitted));
-    add("all of it", vector(leaving.sum()));
+    add("all of it, cd/m2", vector(leaving.sum()));
     if layers.len() > 1 {
         add("surfaces behind", (layers.len() - 1).to_string());
     }

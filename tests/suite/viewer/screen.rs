@@ -38,21 +38,31 @@ pub(super) fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T 
 impl Screen {
     /// A server, or `None` (printed) where there is none; under CI=true it must be there.
     pub(super) fn open() -> Option<Self> {
-        let folder = tempfile::tempdir().unwrap();
-        let server = Command::new("Xvfb")
+        // Servers that start at the same moment may want the same number, and all but one of them end.
+        wait_for("an X server", || match Self::start() {
+            Ok(started) => started.map(Some),
+            Err(error) => {
+                let is_ci = std::env::var_os("CI").is_some_and(|ci| ci == "true");
+                assert!(!is_ci, "there is no Xvfb ({error}): scripts/setup.sh window");
+                println!("skipped: there is no Xvfb ({error})");
+                Some(None)
+            }
+        })
+    }
+
+    /// A server, or `None` if it has ended at once.
+    fn start() -> std::io::Result<Option<Self>> {
+        let folder = tempfile::tempdir()?;
+        let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-fbdir"])
             .arg(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
-            .spawn();
-        let Ok(mut server) = server else {
-            assert!(std::env::var_os("CI").is_none_or(|ci| ci != "true"), "there is no Xvfb: scripts/setup.sh window");
-            println!("skipped: there is no Xvfb");
-            return None;
-        };
+            .spawn()?;
         let mut number = String::new();
-        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        Some(Self { server, display: format!(":{}", number.trim()), folder })
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number)?;
+        let started = Self { server, display: format!(":{}", number.trim()), folder };
+        Ok(number.trim().parse::<u32>().is_ok().then_some(started))
     }
 
     pub(super) fn path(&self, name: &str) -> PathBuf {
