@@ -132,6 +132,8 @@ impl Gui {
             focused: true,
             ..Default::default()
         };
+        // What is not shown any more has no place.
+        self.context.data_mut(|data| data.remove::<Places>(egui::Id::unique("places")));
         let mut output = self.context.run_ui(input, |ui| content(ui));
         for (id, deltas) in output.textures_delta.set.drain() {
             deltas.iter().for_each(|delta| self.renderer.update_texture(&gpu.device, &gpu.queue, id, delta));

@@ -11,6 +11,9 @@ use std::time::{Duration, Instant};
 /// A window that has not got the size that was asked for by then will not get it.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// A part of the panel that has not appeared by then will not.
+const LOOKING: Duration = Duration::from_secs(60);
+
 /// A file that grows by a line an event.
 pub(super) struct Recorder {
     path: PathBuf,
@@ -36,11 +39,13 @@ pub(super) struct Player {
     events: VecDeque<Recorded>,
     size: Option<([u32; 2], Instant)>,
     hold: Option<Instant>,
+    /// Since when a part of the panel is looked for.
+    missing: Option<Instant>,
 }
 
 impl Player {
     pub(super) fn new(events: Vec<Recorded>) -> Self {
-        Self { events: events.into(), size: None, hold: None }
+        Self { events: events.into(), size: None, hold: None, missing: None }
     }
 
     pub(super) fn next(&mut self) -> Option<Recorded> {
@@ -50,6 +55,20 @@ impl Player {
     /// The window was asked to get a size.
     pub(super) fn wait_for(&mut self, size_px: [u32; 2]) {
         self.size = Some((size_px, Instant::now()));
+    }
+
+    /// What was looked for is there.
+    pub(super) fn found(&mut self) {
+        self.missing = None;
+    }
+
+    /// Puts an event back whose part of the panel is not there, if it may still come.
+    pub(super) fn may_come(&mut self, event: Recorded) -> bool {
+        let waits = self.missing.get_or_insert_with(Instant::now).elapsed() < LOOKING;
+        if waits {
+            self.events.push_front(event);
+        }
+        waits
     }
 
     /// Does nothing for a while.

@@ -27,6 +27,8 @@ use winit::window::{Window, WindowId};
 const BEHIND: [f32; 3] = [0.16; 3];
 /// Repaints that the panel asks for later than this do not matter.
 const NEVER: Duration = Duration::from_secs(3600);
+/// Between two looks at what a replay waits for.
+const LOOK_AGAIN: Duration = Duration::from_millis(10);
 /// Between two steps of a flight.
 const FLIGHT_STEP: Duration = Duration::from_millis(16);
 
@@ -286,7 +288,7 @@ impl App {
         }
         let size = open.window.inner_size();
         if !player.has_size([size.width, size.height]) {
-            self.due = Some(Instant::now() + Duration::from_millis(10));
+            self.due = Some(Instant::now() + LOOK_AGAIN);
             return;
         }
         let Some(Recorded { at_s, event }) = player.next() else {
@@ -307,7 +309,15 @@ impl App {
                 self.refresh();
             }
             InputEvent::PointAt { widget, x, y } => match open.gui.place(&widget, (x, y)) {
-                Some((x, y)) => self.input(event_loop, &InputEvent::Pointer { x, y }, at_s),
+                Some((x, y)) => {
+                    player.found();
+                    self.input(event_loop, &InputEvent::Pointer { x, y }, at_s);
+                }
+                None if player
+                    .may_come(Recorded { at_s, event: InputEvent::PointAt { widget: widget.clone(), x, y } }) =>
+                {
+                    self.due = Some(Instant::now() + LOOK_AGAIN);
+                }
                 None => {
                     let problem = format!("the recording points at `{widget}`, which the panel does not show");
                     self.fail(event_loop, ViewError::Replay(problem));

@@ -174,6 +174,39 @@ fn bad_files_are_named_in_the_window_and_leave_the_model() {
 }
 
 #[test]
+fn the_truth_comes_beside_the_picture() {
+    let Some(screen) = Screen::open() else { return };
+    let (width, height) = (300, 240);
+    let events = [
+        key("F12").into(),
+        key("Escape").into(),
+        key("R").into(),
+        // The figures come with the first samples; from then on errors are shown.
+        click("truth/errors", 0.05).into(),
+        vec![r#""pointer-left""#.into(), hold(300)],
+    ];
+    let _window = screen.play(&asset("spheres.glb"), &["--size", "300x240"], &events.concat());
+    wait_for("the picture", || screen.path("spheres-1.json").exists().then_some(()));
+    let picture = image::DynamicImage::from(screen.picture("spheres-1.png")).to_rgb8();
+    // Above the figures, on both sides of the line: the picture, and colours that are not the picture's.
+    let shares = || {
+        let shown = screen.pixels(width, height);
+        [0..width / 2 - 4, width / 2 + 4..width].map(|columns| {
+            let places = (0..height / 2).flat_map(|y| columns.clone().map(move |x| (x, y)));
+            let same = |&(x, y): &(usize, usize)| {
+                let at = 3 * (y * width + x);
+                picture.get_pixel(x as u32, y as u32).0 == shown[at..at + 3]
+            };
+            places.clone().filter(same).count() as f64 / places.count() as f64
+        })
+    };
+    wait_for("the errors", || {
+        let [left, right] = shares();
+        (left == 1.0 && right < 0.1).then_some(())
+    });
+}
+
+#[test]
 fn a_model_that_changes_is_read_again() {
     let Some(screen) = Screen::open() else { return };
     std::fs::copy(asset("spheres.glb"), screen.path("model.glb")).unwrap();

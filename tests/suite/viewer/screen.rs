@@ -53,8 +53,9 @@ impl Screen {
     /// A server, or `None` if it has ended at once.
     fn start() -> std::io::Result<Option<Self>> {
         let folder = tempfile::tempdir()?;
+        // Reset when its last client has gone, it would turn away one that comes at that moment.
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-fbdir"])
+            .args(["-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp", "-noreset", "-fbdir"])
             .arg(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
