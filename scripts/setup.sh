@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks that the project can be built and that a Vulkan driver is there; installs Mesa's software driver where neither
 # a question nor a password stands in the way. Changes nothing else, and nothing at all when all is there.
+# `scripts/setup.sh window` also wants what the tests of the viewer need: an X server without a screen, and input for it.
 set -eu
 
 say() { printf '%s\n' "setup: $*" >&2; }
@@ -52,15 +53,18 @@ install_command() {
     fi
 }
 
+# install_with_apt PACKAGE...
 install_with_apt() {
+    packages=$*
     prefix=$(root_prefix) || return 1
-    say 'no Vulkan driver found: installing mesa-vulkan-drivers (Mesa, draws on the CPU where there is no GPU)'
     # The prefix is one or more words by design.
     # shellcheck disable=SC2086
     set -- $prefix DEBIAN_FRONTEND=noninteractive apt-get --quiet --quiet
-    "$@" install --yes --no-install-recommends mesa-vulkan-drivers >&2 && return 0
+    # shellcheck disable=SC2086
+    "$@" install --yes --no-install-recommends $packages >&2 && return 0
     say 'refreshing the package lists and trying again'
-    "$@" update >&2 && "$@" install --yes --no-install-recommends mesa-vulkan-drivers >&2
+    # shellcheck disable=SC2086
+    "$@" update >&2 && "$@" install --yes --no-install-recommends $packages >&2
 }
 
 if ! command -v cargo >/dev/null; then
@@ -70,8 +74,14 @@ fi
 
 # Elsewhere the system's own Metal or Direct3D is used.
 [ "$(uname -s)" = Linux ] || exit 0
+if [ "${1:-}" = window ] && ! { command -v Xvfb && command -v xdotool; } >/dev/null; then
+    say 'the tests of the viewer need Xvfb and xdotool: installing them'
+    { command -v apt-get >/dev/null && install_with_apt xvfb xdotool; } ||
+        say 'they could not be installed from here; the tests of the viewer will be skipped'
+fi
 have_vulkan_loader && have_vulkan_driver && exit 0
-if command -v apt-get >/dev/null && install_with_apt; then
+say 'no Vulkan driver found: installing mesa-vulkan-drivers (Mesa, draws on the CPU where there is no GPU)'
+if command -v apt-get >/dev/null && install_with_apt mesa-vulkan-drivers; then
     exit 0
 fi
 say "no Vulkan driver could be installed from here; run: $(install_command)"

@@ -4,7 +4,7 @@ set -eu
 . "$(dirname -- "$0")/environment.sh"
 cd "$root"
 
-scripts/setup.sh
+scripts/setup.sh window
 cargo fmt --check
 cargo clippy --workspace --all-targets -- -D warnings
 cargo test --workspace

@@ -81,6 +81,20 @@ impl CaptureTarget {
         })
     }
 
+    /// Display values of the frame that was drawn last, in [`formats::CAPTURED_DISPLAY`].
+    pub fn display_view(&self) -> &wgpu::TextureView {
+        &self.display_view
+    }
+
+    /// The same in memory: RGBA8 from the top left, sRGB with straight alpha.
+    pub fn read_display(&self, gpu: &Gpu) -> Result<Vec<u8>, CaptureError> {
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("readback") });
+        let readback = read_texture(&gpu.device, &mut encoder, &self.display);
+        gpu.queue.submit([encoder.finish()]);
+        Ok(readback.wait(gpu)?)
+    }
+
     /// Of the frames drawn so far.
     pub fn state(&self) -> MutexGuard<'_, FrameState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)

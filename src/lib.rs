@@ -1,5 +1,7 @@
 //! Specula: a real-time, physically based glTF renderer on wgpu.
 
+#[cfg(feature = "cli")]
+pub mod app;
 pub mod bake;
 #[cfg(feature = "disk-cache")]
 pub mod cache;
@@ -12,6 +14,10 @@ pub mod gpu_scene;
 pub mod import;
 pub mod math;
 pub mod metrics;
+#[cfg(feature = "cli")]
+mod output;
+#[cfg(feature = "cli")]
+mod parallel;
 pub mod passes;
 pub mod progress;
 #[cfg(feature = "cli")]

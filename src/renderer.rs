@@ -70,6 +70,11 @@ pub enum PathChoice {
 }
 
 impl PathChoice {
+    /// What suits a kind of device.
+    pub fn for_device(kind: wgpu::DeviceType) -> Self {
+        if kind == wgpu::DeviceType::Cpu { Self::Faster } else { Self::Forward }
+    }
+
     /// As reports have it.
     pub fn name(self) -> &'static str {
         match self {
@@ -165,7 +170,31 @@ impl Renderer {
         levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        let mut uploaded = GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?;
+        let uploaded = GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?;
+        Ok(self.deferrable((device, queue), scene, uploaded))
+    }
+
+    /// Uploads a scene once more, of which all but the images may have changed: its textures are those of `previous`, and
+    /// so are those of its environment where `same_light` says that image and maps have not changed.
+    pub fn upload_again(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        (maps, same_light): (Option<&EnvironmentMaps>, bool),
+        previous: GpuScene,
+    ) -> Result<GpuScene, RenderError> {
+        let uploaded = previous.again(device, queue, scene, (maps, same_light), &table(&disney::TABLE))?;
+        Ok(self.deferrable((device, queue), scene, uploaded))
+    }
+
+    /// With what the deferred path needs, where that may be taken.
+    fn deferrable(
+        &self,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        scene: &Scene,
+        mut uploaded: GpuScene,
+    ) -> GpuScene {
         let may_defer = match self.path {
             PathChoice::Forward => false,
             PathChoice::Faster => is_worth_deferring(&uploaded.drawables),
@@ -174,7 +203,7 @@ impl Renderer {
         if may_defer && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             uploaded.pull(device, queue, scene);
         }
-        Ok(uploaded)
+        uploaded
     }
 
     /// Makes the pipelines that this view needs on the forward path, so that [`Self::encode_radiance`] compiles nothing.

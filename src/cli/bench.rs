@@ -203,7 +203,7 @@ fn steady(
     Ok(SteadyReport {
         schema: "specula-steady/1",
         specula: env!("CARGO_PKG_VERSION"),
-        model: args.subject.model.display().to_string(),
+        model: args.subject.model().display().to_string(),
         environment: args.subject.environment_name().to_owned(),
         adapter: AdapterStats::of(gpu),
         basis,
@@ -255,7 +255,7 @@ fn measure(
     let mut light =
         Light { truth: Truth::of_shading(&bare, view, &options), stage: Stage::new(gpu, &bare, cache), view };
     Ok(report::Report::new(report::Parts {
-        model: args.subject.model.display().to_string(),
+        model: args.subject.model().display().to_string(),
         environment: args.subject.environment_name().to_owned(),
         adapter: AdapterStats::of(gpu),
         size_px: view.size_px.to_array(),

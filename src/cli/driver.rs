@@ -87,10 +87,9 @@ impl DriverArgs {
 
     /// The paths that frames may take on a device.
     pub(super) fn paths_on(&self, gpu: &Gpu) -> PathChoice {
-        let is_software = gpu.info.device_type == crate::wgpu::DeviceType::Cpu;
         match self.path {
-            PathArg::Auto if is_software => PathChoice::Faster,
-            PathArg::Auto | PathArg::Forward => PathChoice::Forward,
+            PathArg::Auto => PathChoice::for_device(gpu.info.device_type),
+            PathArg::Forward => PathChoice::Forward,
             PathArg::Deferred => PathChoice::Deferred,
         }
     }

@@ -1,14 +1,11 @@
 //! Flags that light the scene from around.
 
 use super::error::CliError;
+use crate::app::{environment_image, is_file};
 use crate::bake::environment::{self, BakeOptions};
-use crate::bake::studio;
 use crate::cache::{EnvironmentCache, Outcome};
-use crate::import::environment_from_path;
 use crate::progress::Progress;
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, Quality, Scene};
-use glam::Vec3;
-use std::path::Path;
 
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Environment")]
@@ -76,7 +73,7 @@ impl From<Outcome> for CacheUse {
 impl EnvironmentArgs {
     /// Whether the panorama is a file of the user's.
     pub(super) fn is_file(&self) -> bool {
-        !matches!(self.env.as_str(), "neutral" | "white" | "black")
+        is_file(&self.env)
     }
 
     /// The environment, without the cost of one that is black.
@@ -86,12 +83,7 @@ impl EnvironmentArgs {
                 "--env-rotation and --env-intensity take finite numbers, the latter from 0 up".into(),
             ));
         }
-        let image = match self.env.as_str() {
-            "black" => return Ok(None),
-            "white" => EnvironmentImage::constant(Vec3::ONE),
-            "neutral" => studio::studio(),
-            path => environment_from_path(Path::new(path))?,
-        };
+        let Some(image) = environment_image(&self.env)? else { return Ok(None) };
         let rotation_rad = self.env_rotation.to_radians();
         Ok(Some(Environment { rotation_rad, intensity: self.env_intensity, ..Environment::new(image) }))
     }

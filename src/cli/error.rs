@@ -1,5 +1,6 @@
 //! One line for each failure, and its exit code.
 
+use crate::app::StateError;
 use crate::capture::CaptureError;
 use crate::gpu::GpuError;
 use crate::import::ImportError;
@@ -23,10 +24,15 @@ pub(super) enum CliError {
     NoAdapter(GpuError),
     #[error("{0}; install one (scripts/setup.sh): this runs on a GPU or on a software driver")]
     NeedsAdapter(GpuError),
+    #[cfg(feature = "view")]
+    #[error(transparent)]
+    View(#[from] crate::app::ViewError),
     #[error(transparent)]
     Proof(#[from] ProofError),
     #[error("{path}: cannot write: {reason}", path = .path.display())]
     Write { path: PathBuf, reason: String },
+    #[error(transparent)]
+    State(#[from] StateError),
     #[error("{0}")]
     CheckFailed(String),
 }
@@ -35,12 +41,17 @@ impl CliError {
     pub(super) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::CheckFailed(_) => 1,
+            #[cfg(feature = "view")]
+            Self::View(crate::app::ViewError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoMatch { .. })) => 3,
+            #[cfg(feature = "view")]
+            Self::View(_) => 2,
             Self::NoAdapter(_) | Self::NeedsAdapter(_) => 3,
             Self::Usage(_)
             | Self::Parameter(_)
             | Self::Import(_)
             | Self::Capture(_)
             | Self::Proof(_)
+            | Self::State(_)
             | Self::Write { .. } => 2,
         })
     }

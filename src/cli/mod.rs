@@ -17,7 +17,6 @@ mod light;
 mod measure;
 mod output;
 mod overrides;
-mod parallel;
 mod progress;
 mod render;
 mod stability;
@@ -27,7 +26,10 @@ mod svg;
 mod tier;
 mod truth;
 mod view;
+#[cfg(feature = "view")]
+mod window;
 
+use crate::parallel;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -43,6 +45,8 @@ struct Cli {
 enum Command {
     /// Render a model to a picture.
     Render(Box<render::RenderArgs>),
+    #[cfg(feature = "view")]
+    View(window::WindowArgs),
     /// Say what a model holds, or what made one pixel of its picture.
     Inspect(Box<inspect::InspectArgs>),
     /// Check that materials obey the laws of reflection: reciprocity, positivity, energy, facets.
@@ -65,6 +69,8 @@ enum Command {
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        #[cfg(feature = "view")]
+        Command::View(args) => window::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Furnace(args) => furnace::run(&args),
         Command::Bench(args) => bench::run(&args),

@@ -8,25 +8,34 @@ use super::output::{self, Format};
 use super::parallel::beside;
 use super::progress::StderrProgress;
 use super::stats::{AdapterStats, CulledStats, GpuStats, RenderStats, Stopwatch};
-use super::subject::SubjectArgs;
+use super::subject::{SubjectArgs, load_model};
 use super::tier::{TierArgs, TierStats};
 use super::truth::TruthArgs;
 use super::view::ViewArgs;
+use crate::app::{Shown, ViewerState, environment_image, in_units, picture, view_of};
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
 use crate::gpu::Gpu;
 use crate::gpu::formats::Precision;
 use crate::gpu_scene::TextureLevels;
+use crate::import::{ImportOptions, Imported};
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::Renderer;
 use crate::scene::{Channel, Image, RadianceImage, Scene, View};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
+// A state file names a model itself.
+#[command(mut_arg("model", |model| model.required(false).required_unless_present("state")))]
 pub(super) struct RenderArgs {
     #[command(flatten)]
     subject: SubjectArgs,
+    /// Make the picture that the viewer saved with this state (.json): model, camera, light, look and materials. A MODEL
+    /// on the command line takes the place of the state's.
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["ViewArgs", "CameraArgs", "LookArgs", "EnvironmentArgs", "LightArgs", "scene", "overrides", "debug_view"])]
+    state: Option<PathBuf>,
     /// The picture: .png (display-referred) or .exr (linear radiance); - writes PNG to stdout.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -93,20 +102,19 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let progress = StderrProgress::new(args.quiet);
     let watch = Stopwatch::default();
     let mut warnings_of_device = Vec::new();
-    let (loaded, gpu) = beside(
-        || args.subject.load(&progress, &watch),
-        || watch.time("device", || args.driver.open(&mut warnings_of_device)),
-    );
-    let (mut scene, mut warnings) = loaded?;
-    let mut view = args.view.view(&scene, args.subject.has_panorama())?;
+    let (loaded, gpu) =
+        beside(|| load(args, &progress, &watch), || watch.time("device", || args.driver.open(&mut warnings_of_device)));
+    let Subject { mut scene, mut warnings, mut view, model } = loaded?;
     let gpu = gpu?;
     warnings.extend(warnings_of_device);
+    // A tier is chosen by the picture, whatever of it is drawn then.
+    let channel = view.channel.take();
     let tier = watch
         .time("choose the tier", || choose_tier(args, gpu.as_ref(), &scene, &mut view, (&progress, &mut warnings)))?;
-    view.channel = args.debug_view;
+    view.channel = channel;
     let rendered = match gpu {
         Some(gpu) => draw(args, &gpu, &mut scene, &view, format, (&progress, &watch))?,
-        None if args.debug_view.is_some() => {
+        None if view.channel.is_some() => {
             return Err(CliError::Usage(
                 "--debug-view shows what shaders compute; it needs a GPU or a software driver".into(),
             ));
@@ -126,7 +134,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     let stats = RenderStats {
         schema: "specula-render-stats/1",
         specula: env!("CARGO_PKG_VERSION"),
-        model: args.subject.model.display().to_string(),
+        model: model.display().to_string(),
         output: args.output.display().to_string(),
         renderer: if rendered.gpu.is_some() { "gpu" } else { "reference" },
         adapter: rendered.adapter,
@@ -139,6 +147,37 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
         warnings,
     };
     report(args, &stats)
+}
+
+/// What is drawn, and from where.
+struct Subject {
+    scene: Scene,
+    warnings: Vec<String>,
+    view: View,
+    model: PathBuf,
+}
+
+fn load(args: &RenderArgs, progress: &dyn Progress, watch: &Stopwatch) -> Result<Subject, CliError> {
+    let Some(path) = &args.state else {
+        let (scene, warnings) = args.subject.load(progress, watch)?;
+        let view = args.view.view(&scene, args.subject.has_panorama())?;
+        let view = View { channel: args.debug_view, ..view };
+        return Ok(Subject { scene, warnings, view, model: args.subject.model().to_owned() });
+    };
+    let state = ViewerState::read(path)?;
+    let model = args.subject.given_model().or(state.model.as_deref());
+    let model = model.ok_or_else(|| CliError::Usage(format!("{}: it names no model; name one", path.display())))?;
+    let (imported, environment) = beside(
+        || watch.time("decode", || load_model(model, &ImportOptions { progress, ..Default::default() })),
+        || watch.time("environment decode", || environment_image(&state.environment.source)),
+    );
+    let Imported { scene, warnings, .. } = imported?;
+    let mut shown = Shown::new(scene, &state);
+    shown.surround(environment?.map(Arc::new), &state);
+    shown.apply(&state);
+    let view = view_of(&state, &shown.around);
+    let warnings = warnings.iter().map(ToString::to_string).collect();
+    Ok(Subject { view, warnings, model: model.to_owned(), scene: shown.scene })
 }
 
 /// Puts the tier that the limits on error and time ask for into the view.
@@ -224,9 +263,9 @@ fn draw(
     }
     let picture = match (frame.display, frame.radiance, view.channel) {
         (None, Some(image), Some(channel)) => {
-            let image = debug_view::in_units(channel, image, view);
+            let image = in_units(channel, image, view);
             match format {
-                Format::Png => Picture::Display(debug_view::picture(channel, &image, view)),
+                Format::Png => Picture::Display(picture(channel, &image, view)),
                 Format::Exr => Picture::Radiance(image),
             }
         }

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub(super) struct SubjectArgs {
     /// glTF model (.gltf or .glb); - reads it from stdin.
-    pub(super) model: PathBuf,
+    #[arg(required = true)]
+    model: Option<PathBuf>,
     /// Which scene of the file, by number or name, instead of its default.
     #[arg(long, value_name = "N|NAME")]
     scene: Option<String>,
@@ -39,6 +40,16 @@ pub(super) struct Loaded {
 }
 
 impl SubjectArgs {
+    /// The file that was named.
+    pub(super) fn given_model(&self) -> Option<&Path> {
+        self.model.as_deref()
+    }
+
+    /// The file; stdin where none was named.
+    pub(super) fn model(&self) -> &Path {
+        self.given_model().unwrap_or(Path::new("-"))
+    }
+
     /// Whether the panorama is a file of the user's.
     pub(super) fn has_panorama(&self) -> bool {
         self.environment.is_file()
@@ -102,7 +113,7 @@ impl SubjectArgs {
             Ok(index) => SceneChoice::Index(index),
             Err(_) => SceneChoice::Name(scene.clone()),
         });
-        load_model(&self.model, &ImportOptions { scene, sampled_textures_only, progress, ..Default::default() })
+        load_model(self.model(), &ImportOptions { scene, sampled_textures_only, progress, ..Default::default() })
     }
 }
 

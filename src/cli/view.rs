@@ -27,8 +27,9 @@ struct LookArgs {
     /// Exposure in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
     exposure: f32,
-    #[arg(long, value_enum, default_value = "neutral")]
-    tone_map: ToneMapArg,
+    /// neutral, aces, agx, reinhard, linear (exposure and clamp) or none (clamp alone).
+    #[arg(long, value_name = "CURVE", default_value = "neutral", value_parser = parse_tone_map)]
+    tone_map: ToneMap,
     /// transparent, env, or a colour #rrggbb. By default a panorama of yours is seen, and a built-in one is not.
     #[arg(long, value_name = "transparent|env|#rrggbb", value_parser = parse_background)]
     background: Option<Background>,
@@ -49,36 +50,18 @@ pub(super) enum Switch {
     Off,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum ToneMapArg {
-    Neutral,
-    Aces,
-    Agx,
-    Reinhard,
-    Linear,
-    None,
-}
-
-impl From<ToneMapArg> for ToneMap {
-    fn from(arg: ToneMapArg) -> Self {
-        match arg {
-            ToneMapArg::Neutral => Self::Neutral,
-            ToneMapArg::Aces => Self::Aces,
-            ToneMapArg::Agx => Self::AgX,
-            ToneMapArg::Reinhard => Self::Reinhard,
-            ToneMapArg::Linear => Self::Linear,
-            ToneMapArg::None => Self::None,
-        }
-    }
-}
-
-fn parse_size(text: &str) -> Result<UVec2, String> {
+pub(super) fn parse_size(text: &str) -> Result<UVec2, String> {
     let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, such as 1024x768")?;
     let side = |text: &str| match text.parse::<u32>() {
         Ok(side) if (1..=SIDE_MAX).contains(&side) => Ok(side),
         _ => Err(format!("`{text}` is not a number of pixels from 1 to {SIDE_MAX}")),
     };
     Ok(UVec2::new(side(width)?, side(height)?))
+}
+
+fn parse_tone_map(text: &str) -> Result<ToneMap, String> {
+    let names = || ToneMap::ALL.map(ToneMap::name).join(", ");
+    ToneMap::by_name(text).ok_or_else(|| format!("expected one of {}", names()))
 }
 
 fn parse_geometry(text: &str) -> Result<Geometry, String> {
@@ -120,7 +103,7 @@ impl ViewArgs {
             camera: self.camera.camera(scene, self.size)?,
             size_px: self.size,
             exposure_ev: self.look.exposure,
-            tone_map: self.look.tone_map.into(),
+            tone_map: self.look.tone_map,
             background,
             energy_compensation: self.look.energy_compensation == Switch::On,
             geometry: self.look.geometry,

@@ -103,6 +103,11 @@ pub fn display_entries() -> Vec<BindGroupLayoutEntry> {
     vec![buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform), texture(1, false)]
 }
 
+/// Finished pictures to a window: uniform, and two of them.
+pub fn present_entries() -> Vec<BindGroupLayoutEntry> {
+    vec![buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform), texture(1, false), texture(2, false)]
+}
+
 /// The layout of [`frame_entries`].
 pub fn frame_layout(device: &Device, features: SceneFeatures) -> BindGroupLayout {
     layout(device, "frame", &frame_entries(features))
@@ -121,6 +126,11 @@ pub fn background_layout(device: &Device) -> BindGroupLayout {
 /// The layout of [`display_entries`].
 pub fn display_layout(device: &Device) -> BindGroupLayout {
     layout(device, "display", &display_entries())
+}
+
+/// The layout of [`present_entries`].
+pub fn present_layout(device: &Device) -> BindGroupLayout {
+    layout(device, "present", &present_entries())
 }
 
 /// The layout of [`visibility_entries`].

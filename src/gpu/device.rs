@@ -1,6 +1,7 @@
 //! Finding an adapter and opening it for headless work.
 
 use super::formats::Precision;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Which adapter is wanted.
@@ -28,6 +29,8 @@ pub enum GpuError {
     NoMatch { wanted: String, found: String },
     #[error("the adapter {adapter} gave no device: {reason}")]
     NoDevice { adapter: String, reason: String },
+    #[error("the window gives no surface to draw on: {0}")]
+    NoSurface(String),
     #[error("the GPU failed: {0}")]
     Failed(String),
 }
@@ -39,7 +42,9 @@ pub struct Gpu {
     pub adapter: wgpu::Adapter,
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    instance: wgpu::Instance,
     errors: Arc<Mutex<Vec<String>>>,
+    lost: Arc<AtomicBool>,
 }
 
 /// The optional features that Specula uses when they are there; none is required.
@@ -57,11 +62,38 @@ pub fn usable_features(precision: Precision) -> wgpu::Features {
 impl Gpu {
     /// Opens the best adapter that matches: hardware before software, a native API before GL.
     pub fn open(request: &GpuRequest, options: GpuOptions) -> Result<Self, GpuError> {
-        pollster::block_on(Self::open_async(request, options))
+        pollster::block_on(async {
+            let (instance, adapter) = choose_adapter(request).await?;
+            Self::open_async(instance, adapter, options).await
+        })
     }
 
-    async fn open_async(request: &GpuRequest, options: GpuOptions) -> Result<Self, GpuError> {
-        let adapter = choose_adapter(request).await?;
+    /// The same among the adapters that can draw into a window of `display`.
+    pub fn open_for_window(
+        request: &GpuRequest,
+        options: GpuOptions,
+        display: Box<dyn wgpu::wgt::WgpuHasDisplayHandle>,
+        window: impl Into<wgpu::SurfaceTarget<'static>>,
+    ) -> Result<(Self, wgpu::Surface<'static>), GpuError> {
+        pollster::block_on(async {
+            let instance = instance(request, Some(display));
+            let surface = surface(&instance, window)?;
+            let mut adapters = matching_adapters(&instance, request).await?;
+            adapters.retain(|adapter| adapter.is_surface_supported(&surface));
+            Ok((Self::open_async(instance, first(adapters)?, options).await?, surface))
+        })
+    }
+
+    /// Another surface for the window of this device, after the one before was lost.
+    pub fn surface(&self, window: impl Into<wgpu::SurfaceTarget<'static>>) -> Result<wgpu::Surface<'static>, GpuError> {
+        surface(&self.instance, window)
+    }
+
+    async fn open_async(
+        instance: wgpu::Instance,
+        adapter: wgpu::Adapter,
+        options: GpuOptions,
+    ) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let adapter_limits = adapter.limits();
         let limits = wgpu::Limits {
@@ -86,7 +118,17 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             sink.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
         }));
-        Ok(Self { info, adapter, device, queue, errors })
+        let lost = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&lost);
+        device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
+        Ok(Self { info, adapter, device, queue, instance, errors, lost })
+    }
+
+    /// Whether the device is gone, and all that was made of it. Asks the driver.
+    pub fn is_lost(&self) -> bool {
+        // What is wrong with a device that cannot be asked shows in the flag, or at the next frame.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.lost.load(Ordering::Relaxed)
     }
 
     /// Fails when the driver or wgpu has reported anything since the last call.
@@ -113,7 +155,7 @@ impl Gpu {
 
 /// All adapters that match, the one that [`Gpu::open`] takes first.
 pub fn adapters(request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
-    pollster::block_on(matching_adapters(request))
+    pollster::block_on(matching_adapters(&instance(request, None), request))
 }
 
 /// Memory of a software driver is the process's own, and what is let go of a block that holds something else stays taken.
@@ -128,18 +170,20 @@ fn memory_hints(device: wgpu::DeviceType) -> wgpu::MemoryHints {
     }
 }
 
-async fn choose_adapter(request: &GpuRequest) -> Result<wgpu::Adapter, GpuError> {
+async fn choose_adapter(request: &GpuRequest) -> Result<(wgpu::Instance, wgpu::Adapter), GpuError> {
     // Asking GL loads a second software driver, with which no more is possible than with the first.
     if request.adapter.is_none() && request.backends.is_none() && !may_have_hardware() {
         let without_gl = GpuRequest { backends: Some(wgpu::Backends::all() - wgpu::Backends::GL), adapter: None };
-        if let Ok(adapters) = matching_adapters(&without_gl).await
+        let instance = instance(&without_gl, None);
+        if let Ok(adapters) = matching_adapters(&instance, &without_gl).await
             && let Some(adapter) = adapters.into_iter().next()
         {
-            return Ok(adapter);
+            return Ok((instance, adapter));
         }
     }
-    let adapters = matching_adapters(request).await?;
-    adapters.into_iter().next().ok_or_else(|| GpuError::NoAdapter { looked_at: "all backends".into() })
+    let instance = instance(request, None);
+    let adapter = first(matching_adapters(&instance, request).await?)?;
+    Ok((instance, adapter))
 }
 
 /// False where the system has no device that a GL driver could drive; of other systems than Linux this is not known.
@@ -149,13 +193,28 @@ fn may_have_hardware() -> bool {
     !cfg!(target_os = "linux") || DEVICES.iter().any(|device| std::path::Path::new(device).exists())
 }
 
-async fn matching_adapters(request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
+fn instance(request: &GpuRequest, display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wgpu::Instance {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    descriptor.display = display;
     if let Some(backends) = request.backends {
         descriptor.backends = backends;
     }
-    let backends = descriptor.backends;
-    let instance = wgpu::Instance::new(descriptor);
+    wgpu::Instance::new(descriptor)
+}
+
+fn surface(
+    instance: &wgpu::Instance,
+    window: impl Into<wgpu::SurfaceTarget<'static>>,
+) -> Result<wgpu::Surface<'static>, GpuError> {
+    instance.create_surface(window).map_err(|error| GpuError::NoSurface(one_line(&error.to_string())))
+}
+
+fn first(adapters: Vec<wgpu::Adapter>) -> Result<wgpu::Adapter, GpuError> {
+    adapters.into_iter().next().ok_or_else(|| GpuError::NoAdapter { looked_at: "all backends".into() })
+}
+
+async fn matching_adapters(instance: &wgpu::Instance, request: &GpuRequest) -> Result<Vec<wgpu::Adapter>, GpuError> {
+    let backends = request.backends.unwrap_or_else(|| wgpu::Backends::all().with_env());
     let mut adapters = instance.enumerate_adapters(backends).await;
     if adapters.is_empty() {
         return Err(GpuError::NoAdapter { looked_at: format!("{backends:?}") });

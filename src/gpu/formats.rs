@@ -72,6 +72,12 @@ pub fn is_half_float(format: TextureFormat) -> bool {
     matches!(format, TextureFormat::R16Float | TextureFormat::Rgba16Float)
 }
 
+/// The format in which a window is drawn that can be shown in `possible` ones: one that takes display values as they are.
+pub fn presented(possible: &[TextureFormat]) -> Option<TextureFormat> {
+    let plain = [TextureFormat::Bgra8Unorm, TextureFormat::Rgba8Unorm];
+    plain.into_iter().find(|format| possible.contains(format))
+}
+
 /// Whether a target of this format applies the sRGB transfer by itself.
 pub fn encodes_srgb(format: TextureFormat) -> bool {
     format.is_srgb()

@@ -18,6 +18,8 @@ const HALF_MAX: f32 = 65000.0;
 #[derive(Debug)]
 pub(crate) struct GpuEnvironment {
     pub(crate) atlas: wgpu::TextureView,
+    /// What its texels are divided by.
+    atlas_scale: f32,
     pub(crate) uniform: wgpu::Buffer,
     pub(crate) environment_from_world: DMat3,
     pub(crate) intensity: f32,
@@ -33,14 +35,22 @@ pub struct Panorama {
 }
 
 impl GpuEnvironment {
+    /// With the textures of the `previous` one, if that was made of the same image and maps.
     pub(crate) fn new(
         device: &wgpu::Device,
         staging: &mut Staging<'_>,
         environment: &Environment,
         maps: &EnvironmentMaps,
+        previous: Option<Self>,
     ) -> Result<Self, UploadError> {
-        let (atlas, scale) =
-            upload(device, staging, "environment atlas", maps.atlas_width, maps.atlas_height, &maps.texels)?;
+        let (atlas, scale, panorama) = match previous {
+            Some(previous) => (previous.atlas, previous.atlas_scale, previous.panorama),
+            None => {
+                let (width, height) = (maps.atlas_width, maps.atlas_height);
+                let (atlas, scale) = upload(device, staging, "environment atlas", width, height, &maps.texels)?;
+                (atlas, scale, None)
+            }
+        };
         let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
         let intensity = environment.intensity;
         let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
@@ -63,11 +73,12 @@ impl GpuEnvironment {
         });
         Ok(Self {
             atlas,
+            atlas_scale: scale,
             uniform,
             environment_from_world,
             intensity: intensity as f32,
             image: Arc::clone(&environment.image),
-            panorama: None,
+            panorama,
         })
     }
 

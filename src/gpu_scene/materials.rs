@@ -2,7 +2,7 @@
 
 use super::entry;
 use super::tables::Table;
-use super::textures::{TextureCache, TextureLevels, textures_of};
+use super::textures::{TextureCache, textures_of};
 use crate::frame::Drawables;
 use crate::gpu::Staging;
 use crate::gpu::bindings::material_layout;
@@ -23,16 +23,15 @@ pub(crate) struct Materials {
     pub(crate) layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
 }
 
-/// Uploads what the draws read. Returns the groups, the bytes of all textures, and warnings.
+/// Uploads what the draws read, and what of their textures `cache` does not have.
 pub(crate) fn upload(
     (device, queue): (&wgpu::Device, &wgpu::Queue),
     staging: &mut Staging<'_>,
     scene: &Scene,
     drawables: &Drawables,
-    levels: TextureLevels,
+    cache: &mut TextureCache,
     disney_table: &Table,
-) -> (Materials, u64, Vec<String>) {
-    let mut cache = TextureCache::new(levels);
+) -> Materials {
     let mut materials = Materials::default();
     let mut bound: HashMap<(usize, MaterialFeatures), wgpu::BindGroup> = HashMap::new();
     let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
@@ -42,10 +41,10 @@ pub(crate) fn upload(
         let layout = materials.layouts.entry(key.1).or_insert_with(|| material_layout(device, &key.1));
         let group = bound
             .entry(key)
-            .or_insert_with(|| bind(device, staging, scene, (&mut cache, disney_table.as_ref()), layout, key));
+            .or_insert_with(|| bind(device, staging, scene, (cache, disney_table.as_ref()), layout, key));
         materials.groups.push(group.clone());
     }
-    (materials, cache.bytes, cache.warnings)
+    materials
 }
 
 fn bind(

@@ -26,6 +26,7 @@ pub(crate) use lights::GpuClusters;
 use lights::GpuLights;
 pub use pulled::PulledGeometry;
 pub use tables::Table;
+use textures::TextureCache;
 pub use textures::TextureLevels;
 
 /// Why a scene cannot be put on this device.
@@ -80,6 +81,7 @@ pub struct GpuScene {
     pub(crate) pulled: Option<PulledGeometry>,
     pub(crate) lights: Option<GpuLights>,
     pub(crate) environment: Option<GpuEnvironment>,
+    textures: TextureCache,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
 }
 
@@ -103,17 +105,43 @@ impl GpuScene {
         maps: Option<&EnvironmentMaps>,
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
+        Self::with_textures(device, queue, scene, (TextureCache::new(levels), None), maps, disney_table)
+    }
+
+    /// The same of a scene of which all but the images is another now, with the textures of this one; and with those of
+    /// its environment, where `same_light` says that image and maps are the same.
+    pub fn again(
+        self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        (maps, same_light): (Option<&EnvironmentMaps>, bool),
+        disney_table: &Table,
+    ) -> Result<Self, UploadError> {
+        let environment = self.environment.filter(|_| same_light);
+        Self::with_textures(device, queue, scene, (self.textures, environment), maps, disney_table)
+    }
+
+    fn with_textures(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        (mut textures, light): (TextureCache, Option<GpuEnvironment>),
+        maps: Option<&EnvironmentMaps>,
+        disney_table: &Table,
+    ) -> Result<Self, UploadError> {
         let mut features = SceneFeatures::of(scene);
         features.suns = features.environment && maps.is_some_and(|maps| !maps.suns.is_empty());
         let drawables = Drawables::new(scene, features);
         let origin_in_world = drawables.origin_in_world;
         let mut staging = Staging::new(device, queue);
         let geometry = upload_primitives(device, scene, &drawables)?;
-        let (materials, texture_bytes, warnings) =
-            materials::upload((device, queue), &mut staging, scene, &drawables, levels, disney_table);
+        let materials =
+            materials::upload((device, queue), &mut staging, scene, &drawables, &mut textures, disney_table);
+        textures.forget_levels();
         let environment = match (features.environment, &scene.environment, maps) {
             (true, Some(environment), Some(maps)) => {
-                Some(GpuEnvironment::new(device, &mut staging, environment, maps)?)
+                Some(GpuEnvironment::new(device, &mut staging, environment, maps, light)?)
             }
             (true, ..) => return Err(UploadError::MissingMaps),
             (false, ..) => None,
@@ -136,10 +164,11 @@ impl GpuScene {
             features,
             bytes: UploadedBytes {
                 geometry: geometry.vertices.size() + geometry.indices.size(),
-                textures: texture_bytes,
+                textures: textures.bytes,
                 environment: environment.as_ref().map_or(0, GpuEnvironment::bytes),
             },
-            warnings,
+            warnings: textures.warnings.clone(),
+            textures,
             instances: storage("instances", bytemuck::cast_slice(&instance_data)),
             lights,
             draws: geometry.primitives.into_iter().zip(materials.groups).map(GpuDraw::new).collect(),

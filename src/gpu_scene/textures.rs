@@ -89,6 +89,11 @@ impl TextureCache {
         Self { levels, views: HashMap::new(), samplers: HashMap::new(), bytes: 0, warnings: Vec::new() }
     }
 
+    /// Lets go of levels that nothing has used.
+    pub(super) fn forget_levels(&mut self) {
+        self.levels.levels.clear();
+    }
+
     /// The image `index` of the scene in one role, uploaded at its first use.
     pub(super) fn view(
         &mut self,

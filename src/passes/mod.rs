@@ -4,8 +4,10 @@ mod background;
 mod deferred;
 mod display;
 mod forward;
+mod present;
 
 pub use background::{BackgroundPass, BackgroundPipeline, BackgroundTarget};
 pub use deferred::{DeferredGroups, DeferredPass, DeferredPipelines, DeferredTarget};
 pub use display::{DisplayPass, DisplayPipelines};
 pub use forward::{ForwardPipelines, ForwardTarget, draw};
+pub use present::{PresentPass, Presented};

@@ -6,6 +6,7 @@ use crate::progress::{Progress, Silent};
 use crate::scene::{RadianceImage, Scene, View};
 use glam::{DVec2, DVec4, UVec2, Vec4};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// How a picture is estimated, and when it is done: at the first of the limits that are given.
@@ -97,7 +98,33 @@ pub fn estimate(scene: &Scene, view: &View, options: &EstimateOptions) -> Estima
         }
         rendering.expect(wanted.min(f64::from(last)));
     }
-    rendering.finish(done)
+    rendering.result(done)
+}
+
+/// Renders `scene` with ever more samples, up to those of `options`, whose limits on error and time do not count here.
+/// `look` sees the picture with its errors at each stop on the way. It goes on until `stop` is set, which is heeded
+/// between rows; a picture that is not complete is not shown.
+pub fn refine(
+    scene: &Scene,
+    view: &View,
+    options: &EstimateOptions,
+    stop: &AtomicBool,
+    mut look: impl FnMut(Estimate),
+) {
+    let last = options.samples.max(1).div_ceil(REPLICATES);
+    let tracer = Tracer::new(scene, view, options.bounces);
+    let mut rendering = Rendering { stop: Some(stop), ..Rendering::new(tracer, view, REPLICATES, options) };
+    let mut done = 0;
+    while done < last {
+        let next = after(done).min(last);
+        rendering.announce(next - done);
+        rendering.extend(done..next);
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
+        done = next;
+        look(rendering.result(done));
+    }
 }
 
 /// Numbers of samples at which a sequence is looked at: powers of two, and halfway between. The former are stratified
@@ -133,12 +160,14 @@ struct Rendering<'a> {
     replicates: u32,
     options: &'a EstimateOptions<'a>,
     pixels: Vec<Pixel>,
+    /// Once it is set, nothing more is drawn.
+    stop: Option<&'a AtomicBool>,
 }
 
 impl<'a> Rendering<'a> {
     fn new(tracer: Tracer<'a>, view: &View, replicates: u32, options: &'a EstimateOptions<'a>) -> Self {
         let count = view.size_px.x as usize * view.size_px.y as usize;
-        Self { tracer, size: view.size_px, replicates, options, pixels: vec![Pixel::default(); count] }
+        Self { tracer, size: view.size_px, replicates, options, pixels: vec![Pixel::default(); count], stop: None }
     }
 
     /// A step of progress is one sample of a row in each replicate.
@@ -152,12 +181,15 @@ impl<'a> Rendering<'a> {
 
     /// Takes the samples `indices` of every replicate.
     fn extend(&mut self, indices: std::ops::Range<u32>) {
-        let Self { tracer, size, replicates, options, pixels } = self;
+        let Self { tracer, size, replicates, options, pixels, stop } = self;
         let steps = u64::from(indices.end - indices.start);
         let alone = *replicates == 1 && options.samples <= 1;
         // A single sample is where a rasteriser takes it.
         let place = (alone || options.centers).then_some(DVec2::splat(0.5));
         pixels.par_chunks_mut((size.x as usize).max(1)).zip(0..size.y).for_each(|(row, y)| {
+            if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+                return;
+            }
             for (pixel, x) in row.iter_mut().zip(0..size.x) {
                 for (sum, replicate) in pixel.radiance.iter_mut().zip(0..*replicates) {
                     let sampler = PixelSampler::new(seed_of(options.seed, replicate), x, y);
@@ -208,7 +240,7 @@ impl<'a> Rendering<'a> {
         (sum / values.len() as f64).sqrt()
     }
 
-    fn finish(self, samples: u32) -> Estimate {
+    fn result(&self, samples: u32) -> Estimate {
         let UVec2 { x: width, y: height } = self.size;
         let results: Vec<_> = self.pixels.iter().map(|pixel| pixel.mean_and_error(self.replicates, samples)).collect();
         let image = |texels: Vec<Vec4>| RadianceImage { width, height, texels };
@@ -286,6 +318,28 @@ mod tests {
         let unreachable =
             estimate(&scene, &view, &EstimateOptions { samples: 24, relative_error: Some(1e-9), ..Default::default() });
         assert_eq!(unreachable.samples, 24);
+    }
+
+    #[test]
+    fn pictures_are_refined_to_the_estimate_and_can_be_stopped() {
+        let (scene, view) = (scene(), small_view());
+        let options = EstimateOptions { samples: 32, standard_error: true, ..Default::default() };
+        let mut seen = Vec::new();
+        let stop = AtomicBool::new(false);
+        refine(&scene, &view, &options, &stop, |picture| seen.push(picture));
+        assert_eq!(seen.iter().map(|picture| picture.samples).collect::<Vec<_>>(), [8, 16, 24, 32]);
+        let whole = estimate(&scene, &view, &options);
+        // Sums of the same samples, in another order.
+        let last = seen.last().unwrap();
+        for (a, b) in last.radiance.texels.iter().zip(&whole.radiance.texels) {
+            assert!((*a - *b).abs().max_element() <= 1e-5 * b.abs().max_element(), "{a} {b}");
+        }
+        let mut looks = 0;
+        refine(&scene, &view, &options, &stop, |_| {
+            looks += 1;
+            stop.store(true, Ordering::Relaxed);
+        });
+        assert_eq!(looks, 1);
     }
 
     #[test]

@@ -28,5 +28,5 @@ pub mod texture;
 pub mod walk;
 
 pub use crate::math::quadrature;
-pub use estimate::{Estimate, EstimateOptions, REPLICATES, estimate};
+pub use estimate::{Estimate, EstimateOptions, REPLICATES, estimate, refine};
 pub use render::{ReferenceOptions, render};

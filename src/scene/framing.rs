@@ -112,12 +112,18 @@ pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
 }
 
 impl Framing {
-    /// Near and far planes that suit a camera at `eye`: the depth buffer is reversed float, so near may be generous.
+    /// Near and far planes that suit a camera at `eye`.
     pub fn near_far_m(&self, eye: DVec3) -> (f64, f64) {
-        let distance = eye.distance(self.target);
-        let near = (1e-3 * self.radius_m).max(0.5 * (distance - self.radius_m));
-        (near, distance + 2.0 * self.radius_m)
+        near_far_m((self.target, self.radius_m), eye)
     }
+}
+
+/// Near and far planes that suit a camera at `eye` before a sphere with this centre and radius: the depth buffer is
+/// reversed float, so near may be generous.
+pub fn near_far_m((center, radius_m): (DVec3, f64), eye: DVec3) -> (f64, f64) {
+    let distance = eye.distance(center);
+    let near = (1e-3 * radius_m).max(0.5 * (distance - radius_m));
+    (near, distance + 2.0 * radius_m)
 }
 
 #[cfg(test)]

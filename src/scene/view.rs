@@ -21,6 +21,27 @@ pub enum ToneMap {
     None,
 }
 
+impl ToneMap {
+    pub const ALL: [Self; 6] = [Self::Neutral, Self::Aces, Self::AgX, Self::Reinhard, Self::Linear, Self::None];
+
+    /// The name in reports and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Neutral => "neutral",
+            Self::Aces => "aces",
+            Self::AgX => "agx",
+            Self::Reinhard => "reinhard",
+            Self::Linear => "linear",
+            Self::None => "none",
+        }
+    }
+
+    /// The curve of a name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|tone_map| tone_map.name() == name)
+    }
+}
+
 /// What is seen where the scene is not.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Background {

@@ -26,7 +26,7 @@ pub use interface::{
 };
 pub use modules::{
     DisplayFeatures, background_module, covered_module, deferred_module, display_module, forward_module, forward_slots,
-    visibility_module,
+    present_module, visibility_module,
 };
 pub use pulled::{PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, texels_per_vertex};
 #[cfg(feature = "cli")]

@@ -220,6 +220,11 @@ pub fn background_module(sources: &ShaderSources) -> Result<Composed, ShaderErro
     compose(sources, "pass/background.wgsl", &Slots::from([("types", Slot::Text(types::wgsl()))]))
 }
 
+/// Finished pictures to a window.
+pub fn present_module(sources: &ShaderSources) -> Result<Composed, ShaderError> {
+    compose(sources, "pass/present.wgsl", &Slots::from([("types", Slot::Text(types::wgsl()))]))
+}
+
 /// What chooses the display shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DisplayFeatures {

@@ -124,6 +124,7 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "pass/draw_depth.wgsl",
     "pass/forward.wgsl",
     "pass/fullscreen.wgsl",
+    "pass/present.wgsl",
     "pass/visibility.wgsl",
     "surface/alpha_blend.wgsl",
     "surface/alpha_mask.wgsl",

@@ -163,6 +163,20 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// Finished pictures to a window.
+    pub struct PresentUniform {
+        /// Display values behind pixels that are not covered.
+        behind: vec4f,
+        /// Where the right picture begins, pixels from the left.
+        split_px: f32,
+        /// Half the width of the line between the two.
+        line_px: f32,
+        pad_0: f32,
+        pad_1: f32,
+    }
+}
+
+gpu_struct! {
     /// A draw whose pixels are shaded in a pass of their own, which fetches the vertices by itself.
     pub struct PulledDraw {
         /// Where its triangles and vertices begin, in texels.
@@ -197,6 +211,7 @@ pub const ALL: &[Declaration] = &[
     ("BackgroundUniform", BackgroundUniform::WGSL, BackgroundUniform::FIELDS, size_of::<BackgroundUniform>()),
     ("PulledDraw", PulledDraw::WGSL, PulledDraw::FIELDS, size_of::<PulledDraw>()),
     ("DisplayUniform", DisplayUniform::WGSL, DisplayUniform::FIELDS, size_of::<DisplayUniform>()),
+    ("PresentUniform", PresentUniform::WGSL, PresentUniform::FIELDS, size_of::<PresentUniform>()),
 ];
 
 /// All of them as WGSL: the `<types>` slot.

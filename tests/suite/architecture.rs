@@ -6,7 +6,7 @@ use crate::shaders::{display_features, forward_features, term_features};
 use specula::proof;
 use specula::shader::{
     SOURCES, ShaderSources, background_module, covered_module, deferred_module, display_module, forward_module,
-    visibility_module,
+    present_module, visibility_module,
 };
 use std::collections::BTreeSet;
 use tree::{File, exists, files, names_after, read, words};
@@ -39,9 +39,32 @@ const LAYERS: &[(&str, &[&str])] = &[
     // What the shaders are held to: WGSL beside the truth, on a device.
     ("proof", &["bake", "gpu", "gpu_scene", "math", "progress", "reference", "renderer", "scene", "shader"]),
     // The program: everything.
+    ("output", &[]),
+    ("parallel", &[]),
+    ("app", VIEWER),
     ("cli", EVERYTHING),
-    ("app", EVERYTHING),
     ("lib", EVERYTHING),
+];
+
+/// What the viewer is made of; the command line starts it and is not known to it.
+const VIEWER: &[&str] = &[
+    "bake",
+    "cache",
+    "capture",
+    "frame",
+    "gpu",
+    "gpu_scene",
+    "import",
+    "math",
+    "metrics",
+    "output",
+    "parallel",
+    "passes",
+    "progress",
+    "reference",
+    "renderer",
+    "scene",
+    "shader",
 ];
 
 const EVERYTHING: &[&str] = &[
@@ -56,6 +79,8 @@ const EVERYTHING: &[&str] = &[
     "import",
     "math",
     "metrics",
+    "output",
+    "parallel",
     "passes",
     "progress",
     "proof",
@@ -171,7 +196,7 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     let is_apart = |path: &String| path.starts_with("naive/") || path.starts_with("proof/");
     assert!(of_proofs.iter().all(is_apart) && !embedded.iter().any(is_apart), "proofs have folders of their own");
 
-    let mut modules = vec![background_module(&sources).unwrap()];
+    let mut modules = vec![background_module(&sources).unwrap(), present_module(&sources).unwrap()];
     let forward = [forward_features(), term_features()].concat();
     modules.extend(forward.iter().map(|features| forward_module(&sources, features).unwrap()));
     modules.extend(display_features().into_iter().map(|features| display_module(&sources, features).unwrap()));

@@ -53,6 +53,35 @@ fn a_picture_is_written_and_reported() {
 }
 
 #[test]
+fn a_state_stands_for_all_flags_of_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (state, by_state, by_flags) = (path("state.json"), path("state.png"), path("flags.png"));
+    let text = r#"{"schema": "specula-state/1", "model": "assets/spheres.glb", "size_px": [64, 48],
+        "camera": {"pose": {"file": 0}, "fov_deg": 35.0, "orthographic": false},
+        "look": {"exposure_ev": 1.0, "tone_map": "aces", "background": "transparent", "energy_compensation": true,
+            "geometry": "smith-correlated", "quality": "draft", "debug_view": "none"},
+        "environment": {"source": "neutral", "rotation_deg": 90.0, "intensity": 0.5}}"#;
+    std::fs::write(&state, text).unwrap();
+    let render = |arguments: &[&str]| {
+        let output = specula(arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    // The showcase has a camera; a model that is named takes the place of the state's.
+    render(&["render", "--state", &state, SHOWCASE, "-o", &by_state]);
+    let look = ["--exposure", "1", "--tone-map", "aces", "--background", "transparent", "--quality", "draft"];
+    let light = ["--env-rotation", "90", "--env-intensity", "0.5", "--size", "64x48", "--camera", "0"];
+    render(&[&["render", SHOWCASE, "-o", &by_flags], &look[..], &light].concat());
+    assert_eq!(std::fs::read(&by_state).unwrap(), std::fs::read(&by_flags).unwrap());
+    render(&["render", "--state", &state, "-o", &by_state]);
+    assert_ne!(std::fs::read(&by_state).unwrap(), std::fs::read(&by_flags).unwrap());
+
+    assert_fails(&["render", "-o", &by_state], 2, "<MODEL>");
+    assert_fails(&["render", "--state", &state, "--exposure", "1", "-o", &by_state], 2, "cannot be used with");
+    assert_fails(&["render", "--state", "no/such.json", "-o", &by_state], 2, "no/such.json: cannot read");
+}
+
+#[test]
 fn models_and_pictures_go_through_pipes() {
     let model = std::fs::File::open(SHOWCASE).unwrap();
     let output = program()

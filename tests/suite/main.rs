@@ -28,3 +28,5 @@ mod support;
 mod terms;
 mod tiers;
 mod twins;
+#[cfg(feature = "view")]
+mod viewer;

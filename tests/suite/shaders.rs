@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use specula::gpu::bindings::{
     FRAME_INSTANCES, FRAME_TAPS, FRAME_UNIFORM, background_entries, covered_entries, display_entries, frame_entries,
-    material_entries, pulled_entries,
+    material_entries, present_entries, pulled_entries,
 };
 use specula::scene::{
     AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, Texture, TextureRef,
@@ -12,7 +12,7 @@ use specula::scene::{
 };
 use specula::shader::{
     Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
-    VertexFeatures, background_module, covered_module, deferred_module, display_module, forward_module,
+    VertexFeatures, background_module, covered_module, deferred_module, display_module, forward_module, present_module,
     visibility_module,
 };
 use std::collections::BTreeMap;
@@ -197,6 +197,7 @@ fn modules_of_one_term_are_valid_and_use_nothing_that_is_not_bound() {
 fn the_other_passes_use_all_that_is_bound_and_nothing_else() {
     let sources = ShaderSources::default();
     assert_eq!(used(&background_module(&sources).unwrap()), offered(&[background_entries()]));
+    assert_eq!(used(&present_module(&sources).unwrap()), offered(&[present_entries()]));
     for features in display_features() {
         assert_eq!(used(&display_module(&sources, features).unwrap()), offered(&[display_entries()]), "{features:?}");
     }

@@ -29,7 +29,7 @@ fn summary(args: &InspectArgs, loaded: &Loaded) -> Value {
     json!({
         "schema": "specula-inspect-model/1",
         "specula": env!("CARGO_PKG_VERSION"),
-        "model": args.subject.model.display().to_string(),
+        "model": args.subject.model().display().to_string(),
         "scene": { "index": loaded.scene_index, "name": scene.name, "of": loaded.scene_names },
         "counts": counts(scene),
         "bounds_m": bounds,

@@ -13,7 +13,7 @@ use std::fmt::Write;
 pub(super) fn text(args: &InspectArgs, view: &View, explained: &Explained) -> String {
     let (x, y) = (explained.pixel.x, explained.pixel.y);
     let (width, height) = (view.size_px.x, view.size_px.y);
-    let mut text = format!("{}: pixel {x},{y} of {width} x {height}\n", args.subject.model.display());
+    let mut text = format!("{}: pixel {x},{y} of {width} x {height}\n", args.subject.model().display());
     match &explained.hit {
         Some(seen) => text.push_str(&surface(seen)),
         None => text.push_str(&background(view, explained.ray.direction)),
@@ -131,7 +131,7 @@ pub(super) fn json(args: &InspectArgs, view: &View, explained: &Explained) -> Re
     let report = json!({
         "schema": "specula-inspect-pixel/1",
         "specula": env!("CARGO_PKG_VERSION"),
-        "model": args.subject.model.display().to_string(),
+        "model": args.subject.model().display().to_string(),
         "size_px": view.size_px.to_array(),
         "pixel": explained.pixel.to_array(),
         "adapter": explained.adapter,

@@ -1,0 +1,51 @@
+//! The model that is open, and another one by its path.
+
+use crate::app::desk::Desk;
+use crate::app::gui::name_place;
+use crate::app::keys::Action;
+use crate::app::viewer::Effect;
+use std::path::PathBuf;
+
+pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, effects: &mut Vec<Effect>) {
+    if let Some(model) = &desk.viewer.state.model {
+        ui.label(model.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()))
+            .on_hover_text(model.display().to_string());
+    }
+    ui.horizontal(|ui| {
+        let field = ui.add(egui::TextEdit::singleline(&mut desk.texts.model).hint_text("path of a model or a folder"));
+        name_place(&field, "file/path");
+        let open = ui.button("open");
+        name_place(&open, "file/open");
+        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        if (open.clicked() || entered) && !desk.texts.model.trim().is_empty() {
+            effects.push(Effect::Open(PathBuf::from(desk.texts.model.trim())));
+        }
+    });
+    ui.horizontal(|ui| {
+        let buttons = [
+            ("previous", Action::Neighbour { backward: true }),
+            ("next", Action::Neighbour { backward: false }),
+            ("reload", Action::Reload),
+            ("save picture", Action::Screenshot),
+        ];
+        for (label, action) in buttons {
+            let button = ui.button(label);
+            name_place(&button, format!("file/{label}"));
+            if button.clicked() {
+                effects.extend(desk.viewer.act(action));
+            }
+        }
+    });
+    let recent: Vec<PathBuf> = desk.recent.iter().skip(1).cloned().collect();
+    if !recent.is_empty() {
+        ui.menu_button("recent", |ui| {
+            for path in recent {
+                let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    effects.push(Effect::Open(path));
+                    ui.close();
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,47 @@
+//! What lies over the picture.
+
+mod certificate;
+mod file;
+mod inspector;
+mod light;
+mod look;
+mod material;
+mod overlay;
+mod rows;
+mod tree;
+
+pub(super) use inspector::Inspected;
+
+use super::desk::Desk;
+use super::stage::Stage;
+use super::viewer::Effect;
+use egui::{Panel, ScrollArea};
+
+/// Draws all of it, and returns what was asked for by it.
+pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    if desk.viewer.interface.panel {
+        Panel::right("panel").default_size(320.0).show(ui, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| side(ui, desk, stage, &mut effects));
+        });
+    }
+    overlay::progress(ui, desk);
+    overlay::message(ui, desk);
+    overlay::truth(ui, desk);
+    inspector::show(ui, desk, stage);
+    overlay::statistics(ui, desk, stage);
+    overlay::help(ui, desk);
+    effects
+}
+
+/// The parts of the panel, each foldable.
+fn side(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage, effects: &mut Vec<Effect>) {
+    rows::part(ui, "File", true, |ui| file::show(ui, desk, effects));
+    rows::part(ui, "Picture", true, |ui| look::picture(ui, desk));
+    rows::part(ui, "Camera", false, |ui| look::camera(ui, desk));
+    rows::part(ui, "Environment", true, |ui| light::environment(ui, desk));
+    rows::part(ui, "Lights", false, |ui| light::lights(ui, desk));
+    rows::part(ui, "Scene", false, |ui| tree::show(ui, desk));
+    rows::part(ui, "Materials", true, |ui| material::show(ui, desk));
+    rows::part(ui, "What the scene uses", false, |ui| certificate::show(ui, desk, stage));
+}

@@ -1,0 +1,143 @@
+use super::*;
+use crate::app::input::Modifiers;
+use crate::scene::shapes::sphere;
+use crate::scene::{Material, Mesh, Node, Quality, Scene};
+use glam::DMat4;
+
+fn viewer() -> Viewer {
+    let scene = Scene {
+        nodes: vec![Node { mesh: Some(0), parent_from_node: DMat4::IDENTITY, ..Node::default() }],
+        roots: vec![0],
+        meshes: vec![Mesh { name: None, primitives: vec![sphere(1.0, 16, 0)] }],
+        materials: vec![Material::default()],
+        ..Scene::default()
+    };
+    let mut viewer = Viewer::new(ViewerState { size_px: [400, 300], ..ViewerState::default() });
+    viewer.shown = Some(Shown::new(scene, &viewer.state));
+    viewer
+}
+
+/// Feeds events, a tenth of a second apart.
+fn feed(viewer: &mut Viewer, events: &[InputEvent]) -> Vec<Effect> {
+    events.iter().zip(0..).flat_map(|(event, i)| viewer.input(event, 0.1 * f64::from(i), Claims::default())).collect()
+}
+
+fn pointer(x: f64, y: f64) -> InputEvent {
+    InputEvent::Pointer { x, y }
+}
+
+fn button(button: Button, pressed: bool) -> InputEvent {
+    InputEvent::Button { button, pressed }
+}
+
+fn press(key: &str) -> InputEvent {
+    InputEvent::Key { key: key.into(), pressed: true, text: None }
+}
+
+fn release(key: &str) -> InputEvent {
+    InputEvent::Key { key: key.into(), pressed: false, text: None }
+}
+
+fn orbit(viewer: &Viewer) -> crate::app::camera::Orbit {
+    viewer.state.camera.orbit(&viewer.shown.as_ref().unwrap().around)
+}
+
+#[test]
+fn drags_turn_move_and_zoom() {
+    use Button::{Left, Middle, Right};
+    let home = orbit(&viewer());
+    let after = |which: Button| {
+        let mut viewer = viewer();
+        feed(&mut viewer, &[pointer(100.0, 100.0), button(which, true), pointer(150.0, 80.0), button(which, false)]);
+        feed(&mut viewer, &[pointer(10.0, 10.0)]);
+        orbit(&viewer)
+    };
+    let turned = after(Left);
+    assert!(turned.target == home.target && turned.theta_rad < home.theta_rad && turned.phi_rad > home.phi_rad);
+    let panned = after(Middle);
+    assert!(panned.target != home.target && panned.theta_rad == home.theta_rad);
+    assert_eq!(panned.distance_m, home.distance_m);
+    // Upward is nearer.
+    assert!(after(Right).distance_m < home.distance_m);
+}
+
+#[test]
+fn clicks_do_not_turn_and_double_clicks_focus() {
+    let mut viewer = viewer();
+    let home = orbit(&viewer);
+    let click = [button(Button::Left, true), pointer(201.0, 150.0), button(Button::Left, false)];
+    feed(&mut viewer, &[pointer(200.0, 150.0)]);
+    feed(&mut viewer, &click);
+    assert_eq!(orbit(&viewer), home);
+    feed(&mut viewer, &click);
+    let focused = orbit(&viewer);
+    assert!((focused.target().length() - 1.0).abs() < 0.02, "not on the ball: {:?}", focused.target);
+    assert!((focused.distance_m / home.distance_m - 0.5).abs() < 1e-9);
+    // Beside the ball there is nothing to look at.
+    feed(&mut viewer, &[pointer(2.0, 2.0), button(Button::Middle, true), button(Button::Middle, false)]);
+    assert_eq!(orbit(&viewer), focused);
+}
+
+#[test]
+fn the_panel_keeps_what_is_its_own() {
+    let mut viewer = viewer();
+    let before = viewer.state.clone();
+    let claims = Claims { pointer: true, keyboard: true };
+    let events =
+        [pointer(9.0, 9.0), button(Button::Left, true), pointer(99.0, 9.0), InputEvent::Wheel { x: 0.0, y: 3.0 }];
+    for event in events.iter().chain(&[button(Button::Left, false), press("T")]) {
+        assert_eq!(viewer.input(event, 0.0, claims), []);
+    }
+    assert_eq!(viewer.state, before);
+}
+
+#[test]
+fn keys_change_the_look_once_a_press() {
+    let mut viewer = viewer();
+    feed(&mut viewer, &[press("Y"), press("Y"), release("Y")]);
+    assert_eq!(viewer.state.look.quality, Quality::High);
+    feed(&mut viewer, &[press("N")]);
+    assert_eq!(viewer.state.look.debug_view, crate::scene::Channel::by_name("base-color"));
+    let shift = InputEvent::Modifiers(Modifiers { shift: true, ..Modifiers::default() });
+    feed(&mut viewer, &[release("N"), shift, press("N")]);
+    assert_eq!(viewer.state.look.debug_view, None);
+    assert_eq!(feed(&mut viewer, &[InputEvent::Modifiers(Modifiers::default()), press("F12")]), [Effect::Screenshot]);
+}
+
+#[test]
+fn flying_takes_keys_and_time() {
+    let mut viewer = viewer();
+    feed(&mut viewer, &[press("V"), press("W")]);
+    assert!(viewer.is_flying());
+    let before = orbit(&viewer);
+    feed(&mut viewer, &[InputEvent::Pass { seconds: 0.5 }]);
+    let moved = orbit(&viewer).eye() - before.eye();
+    assert!((moved.normalize() + before.direction()).length() < 1e-9, "{moved}");
+    feed(&mut viewer, &[release("W")]);
+    assert!(!viewer.is_flying());
+}
+
+#[test]
+fn what_is_held_can_be_let_go() {
+    let mut viewer = viewer();
+    feed(&mut viewer, &[press("V"), press("W"), pointer(9.0, 9.0), button(Button::Left, true)]);
+    assert!(viewer.is_flying());
+    let releases = viewer.releases();
+    feed(&mut viewer, &releases);
+    assert!(!viewer.is_flying() && viewer.releases().is_empty());
+}
+
+#[test]
+fn bookmarks_and_dropped_files() {
+    let mut viewer = viewer();
+    let shift = |shift| InputEvent::Modifiers(Modifiers { shift, ..Modifiers::default() });
+    let home = viewer.state.camera;
+    feed(&mut viewer, &[shift(true), press("F1"), release("F1"), shift(false), press("7")]);
+    assert_ne!(viewer.state.camera, home);
+    feed(&mut viewer, &[press("F1")]);
+    assert_eq!(viewer.state.camera, home);
+    assert_eq!(feed(&mut viewer, &[InputEvent::Drop { path: "sky.HDR".into() }]), []);
+    assert_eq!(viewer.state.environment.source, "sky.HDR");
+    let open = feed(&mut viewer, &[InputEvent::Drop { path: "notes.txt".into() }]);
+    assert_eq!(open, [Effect::Open("notes.txt".into())]);
+}
