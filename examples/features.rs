@@ -283,7 +283,8 @@ impl Shot {
         };
         let noise = |i: u32| (i.wrapping_mul(2_654_435_761) >> 24) as u8 | 0x80;
         let texels = (0..TEXTURE_SIDE * TEXTURE_SIDE * 4).map(noise).collect::<Vec<u8>>();
-        let image = Image { name: None, width: TEXTURE_SIDE, height: TEXTURE_SIDE, pixels: Pixels::Rgba8(texels.into()) };
+        let image =
+            Image { name: None, width: TEXTURE_SIDE, height: TEXTURE_SIDE, pixels: Pixels::Rgba8(texels.into()) };
         let scene = Scene {
             nodes: vec![Node { mesh: Some(0), ..Default::default() }],
             roots: vec![0],

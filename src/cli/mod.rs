@@ -24,6 +24,7 @@ mod stability;
 mod stats;
 mod subject;
 mod svg;
+mod test;
 mod tier;
 mod truth;
 mod view;
