@@ -12,6 +12,7 @@ mod driver;
 mod environment;
 mod error;
 mod furnace;
+mod glob;
 mod inspect;
 mod light;
 mod measure;
