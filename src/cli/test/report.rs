@@ -1,7 +1,7 @@
 //! What a run of a suite leaves: `report.json`, and what it consists of.
 
+use super::golden::write_in_folders;
 use crate::cli::error::CliError;
-use crate::cli::output;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -169,7 +169,7 @@ impl SuiteReport {
     /// # Errors
     /// When it cannot be written; then none is there, or the one of before.
     pub(in crate::cli) fn write(&self, folder: &Path) -> Result<(), CliError> {
-        output::write(&folder.join(FILE_NAME), self.json()?.as_bytes())
+        write_in_folders(&folder.join(FILE_NAME), self.json()?.as_bytes())
     }
 
     pub(in crate::cli) fn json(&self) -> Result<String, CliError> {
@@ -191,6 +191,20 @@ impl SuiteReport {
         } else {
             Err(problem(format!("is of the layout {}, not {SCHEMA}", report.schema)))
         }
+    }
+}
+
+/// Takes away what an earlier run has reported: if this one is interrupted, nobody shall take that for its report.
+///
+/// # Errors
+/// When it is there and stays.
+pub(super) fn forget(folder: &Path) -> Result<(), CliError> {
+    let path = folder.join(FILE_NAME);
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(CliError::Write { path, reason: error.to_string() })
+        }
+        _ => Ok(()),
     }
 }
 

@@ -37,6 +37,17 @@ pub(in crate::cli::test) struct Case {
     pub(in crate::cli::test) within: Option<(f64, String)>,
 }
 
+impl Case {
+    /// BLAKE3 of the flags.
+    pub(in crate::cli::test) fn settings_hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for setting in &self.settings {
+            hasher.update(&(setting.len() as u64).to_le_bytes()).update(setting.as_bytes());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+}
+
 /// Why a case is left out, and until when.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::cli::test) struct Skip {
@@ -86,7 +97,7 @@ pub(super) fn cases(
         }
         let id = [name.string()?.to_owned()].into_iter().chain(suffix(&combination)).collect::<Vec<_>>().join("/");
         let all = merged(defaults, &flags, varying, kind);
-        cases.push(own.case(source, (id, table.line), model, all, (defaults, folder))?);
+        cases.push(own.case(source, (id, table.line), model, &all, (defaults, folder))?);
     }
     Ok(cases)
 }
@@ -124,10 +135,13 @@ impl Own {
         source: Source<'_>,
         (id, line): (String, usize),
         model: String,
-        flags: Vec<Flag>,
+        flags: &[Flag],
         (defaults, folder): (&Defaults, &Path),
     ) -> Result<Case, CliError> {
-        let arguments: Vec<String> = flags.iter().flat_map(|flag| flag.arguments_from(folder)).collect();
+        let mut arguments: Vec<String> = flags.iter().flat_map(|flag| flag.arguments_from(folder)).collect();
+        if self.kind == Kind::Furnace {
+            arguments.extend(["--env=white", "--background=transparent"].map(str::to_owned));
+        }
         let mut args = flags::parse(&folder.join(&model), &arguments).map_err(|(name, problem)| {
             let flag = flags.iter().find(|flag| Some(&flag.name) == name.as_ref());
             source.error(flag.map_or(line, |flag| flag.line), format!("case {id}: {problem}"))

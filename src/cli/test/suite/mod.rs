@@ -7,6 +7,7 @@ mod table;
 mod tests;
 
 pub(super) use case::Case;
+pub(super) use flags::CaseArgs;
 
 use super::limits::Limit;
 use crate::cli::environment::CacheArgs;
