@@ -102,13 +102,26 @@ pub(super) fn blank(rgba: &[u8]) -> Option<String> {
     })
 }
 
-/// The first number of a frame that is none, if there is one.
-pub(super) fn not_finite(image: &RadianceImage) -> Option<String> {
-    let index = image.texels.iter().position(|texel| !texel.is_finite())?;
+/// The first fault of a frame, of which `image` holds [`Channel::Nan`](crate::scene::Channel::Nan): red where the radiance
+/// is no number, green where it is infinite. What is negative is dark and no more.
+pub(super) fn fault(image: &RadianceImage) -> Option<String> {
+    let index = image.texels.iter().position(|texel| texel.x > 0.0 || texel.y > 0.0)?;
     let (x, y) = (index as u32 % image.width, index as u32 / image.width);
-    let texel = image.texels[index].to_array();
-    let value = texel.into_iter().find(|value| !value.is_finite()).unwrap_or_default();
-    Some(format!("the radiance of pixel ({x}, {y}) is {value}"))
+    let what = if image.texels[index].x > 0.0 { "NaN" } else { "infinite" };
+    Some(format!("the radiance of pixel ({x}, {y}) is {what}"))
+}
+
+/// BLAKE3 of a picture's size and values.
+pub(super) fn picture_hash(width: u32, height: u32, rgba: &[u8]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&width.to_le_bytes()).update(&height.to_le_bytes()).update(rgba);
+    hasher.finalize().to_hex().to_string()
+}
+
+/// The hash that stands beside a golden, if there is one.
+pub(super) fn recorded_hash(golden: &Path) -> Option<String> {
+    let bytes = std::fs::read(golden.with_extension("json")).ok()?;
+    Some(serde_json::from_slice::<Provenance>(&bytes).ok()?.picture_hash)
 }
 
 #[cfg(test)]
@@ -136,6 +149,8 @@ mod tests {
         }
         let sidecar: Provenance = serde_json::from_slice(&std::fs::read(path.with_extension("json")).unwrap()).unwrap();
         assert_eq!(sidecar, provenance());
+        assert_eq!(recorded_hash(&path), Some(sidecar.picture_hash));
+        assert_eq!(recorded_hash(&folder.path().join("none.png")), None);
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 2, "nothing else is left");
     }
 
@@ -150,12 +165,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_found() {
-        let mut image = RadianceImage { width: 4, height: 3, texels: vec![Vec4::ONE; 12] };
-        assert_eq!(not_finite(&image), None);
-        image.texels[6].y = f32::NAN;
-        assert_eq!(not_finite(&image).unwrap(), "the radiance of pixel (2, 1) is NaN");
-        image.texels[6].y = f32::NEG_INFINITY;
-        assert!(not_finite(&image).unwrap().contains("-inf"));
+    fn faults_are_found() {
+        let mut image = RadianceImage { width: 4, height: 3, texels: vec![Vec4::W; 12] };
+        image.texels[1].z = 1.0;
+        assert_eq!(fault(&image), None);
+        image.texels[6].y = 0.25;
+        assert_eq!(fault(&image).unwrap(), "the radiance of pixel (2, 1) is infinite");
+        image.texels[3].x = 1.0;
+        assert_eq!(fault(&image).unwrap(), "the radiance of pixel (3, 0) is NaN");
     }
 }

@@ -65,6 +65,13 @@ pub(super) fn without_picture(case: &Case, status: Status, reason: Option<String
 }
 
 impl Judge<'_> {
+    /// The hash of the picture that a case is known by, if it is known by one.
+    pub(super) fn known_picture(&self, case: &Case) -> Option<String> {
+        (case.kind == Kind::Golden)
+            .then(|| self.suite.golden(&case.id, &self.adapter.class))
+            .and_then(|path| golden::recorded_hash(&path))
+    }
+
     /// Judges the picture of a case, and writes what is to be seen of it.
     pub(super) fn judge(&self, case: &Case, drawn: &Drawn) -> CaseReport {
         let start = Instant::now();
@@ -74,6 +81,7 @@ impl Judge<'_> {
             case: case.id.clone(),
             adapter: self.adapter.clone(),
             scene_hash: drawn.scene_hash.clone(),
+            picture_hash: drawn.picture_hash.clone(),
             settings_hash: case.settings_hash(),
             settings: case.settings.clone(),
         };
@@ -101,7 +109,7 @@ impl Trial<'_> {
         let class = &self.judge.adapter.class;
         let path = self.judge.suite.golden(&self.case.id, class);
         self.report.paths.golden = Some(path.clone());
-        let flaw = golden::not_finite(&self.drawn.radiance).or_else(|| golden::blank(&self.drawn.rgba));
+        let flaw = self.drawn.fault.clone().or_else(|| golden::blank(&self.drawn.rgba));
         let Some((bytes, golden)) = read_golden(&path)? else {
             self.report.status = Status::New;
             return self.propose(&path, flaw);
@@ -164,7 +172,7 @@ impl Trial<'_> {
     /// Where surfaces are, a white furnace has the radiance of its surroundings, which is 1.
     fn in_furnace(&mut self) -> Result<(), CliError> {
         self.actual()?;
-        let texels = &self.drawn.radiance.texels;
+        let texels: &[glam::Vec4] = self.drawn.radiance.as_ref().map_or(&[], |radiance| &radiance.texels);
         let covered = texels.iter().enumerate().filter(|(_, texel)| texel.w > 0.999 || !texel.is_finite());
         let error = |texel: &glam::Vec4| {
             let [r, g, b] = (texel.truncate() - 1.0).abs().to_array();
@@ -193,8 +201,8 @@ impl Trial<'_> {
 
     fn against_truth(&mut self) -> Result<(), CliError> {
         let actual = self.actual()?;
-        if let Some(flaw) = golden::not_finite(&self.drawn.radiance) {
-            self.fail(Some(flaw));
+        if let Some(fault) = &self.drawn.fault {
+            self.fail(Some(fault.clone()));
             return Ok(());
         }
         let path = self.file("truth.png");

@@ -141,6 +141,8 @@ pub(in crate::cli) struct Provenance {
     pub(in crate::cli) adapter: AdapterReport,
     /// BLAKE3 of the bytes of the model, of the files that it refers to, and of the environment.
     pub(in crate::cli) scene_hash: String,
+    /// BLAKE3 of width, height and RGBA values of the picture.
+    pub(in crate::cli) picture_hash: String,
     /// BLAKE3 of the flags.
     pub(in crate::cli) settings_hash: String,
     /// The flags themselves.
@@ -227,6 +229,7 @@ pub(in crate::cli) mod tests {
             case: "helmet".into(),
             adapter: adapter.clone(),
             scene_hash: "5c".repeat(32),
+            picture_hash: "77".repeat(32),
             settings_hash: "1f".repeat(32),
             settings: vec!["--size=64x64".into()],
         };

@@ -6,6 +6,7 @@ use super::report::{CaseReport, Status};
 use super::stage::{Drawn, Stage};
 use super::suite::Case;
 use crate::cli::environment::CacheArgs;
+use crate::cli::error::CliError;
 use crate::gpu::Gpu;
 use crate::progress::{Progress, Silent};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -59,7 +60,7 @@ impl Plan<'_> {
             let case = self.cases[index];
             let drawn = match skip_reason(case) {
                 Some(reason) => Err((Status::Skipped, reason)),
-                None => stage.draw(case, self.judge.times).map_err(|error| (Status::Error, error.to_string())),
+                None => self.draw(&mut stage, case).map_err(|error| (Status::Error, error.to_string())),
             };
             match drawn {
                 // Nobody receives when all judges have panicked; that is told when they are joined.
@@ -68,6 +69,10 @@ impl Plan<'_> {
             }
             progress.advance(1);
         }
+    }
+
+    fn draw<'a>(&self, stage: &mut Stage<'a>, case: &'a Case) -> Result<Drawn, CliError> {
+        stage.draw(case, self.judge.times, self.judge.known_picture(case).as_deref())
     }
 
     /// Cases of one model and light follow each other, otherwise in the order of the suite.

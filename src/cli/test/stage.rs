@@ -1,5 +1,7 @@
 //! Pictures of many cases on one device. What consecutive cases share is loaded once.
 
+use super::golden;
+use super::report::Kind;
 use super::suite::{Case, CaseArgs};
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame, Wanted, submit};
 use crate::cli::debug_view;
@@ -14,7 +16,7 @@ use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::renderer::{PathChoice, Renderer};
-use crate::scene::{EnvironmentMaps, RadianceImage, Scene, View};
+use crate::scene::{Background, Channel, EnvironmentMaps, RadianceImage, Scene, View};
 use glam::UVec2;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -30,7 +32,12 @@ pub(super) struct Drawn {
     pub(super) size_px: UVec2,
     /// sRGB with straight alpha.
     pub(super) rgba: Vec<u8>,
-    pub(super) radiance: RadianceImage,
+    /// [`golden::picture_hash`] of it.
+    pub(super) picture_hash: String,
+    /// Of a furnace, cd/m2.
+    pub(super) radiance: Option<RadianceImage>,
+    /// Where the radiance is no number or infinite, of which the display shows nothing: targets hold neither.
+    pub(super) fault: Option<String>,
     /// Of the model, what it refers to, and the environment.
     pub(super) scene_hash: String,
     /// What the reference renderer makes of the same view, for a case that asks.
@@ -67,11 +74,12 @@ impl<'a> Stage<'a> {
         Self { gpu, cache, progress, renderer, subject: None, maps: Vec::new(), target: None, hashes: HashMap::new() }
     }
 
-    /// The picture of a case, drawn `times` times from the upload on.
+    /// The picture of a case, drawn `times` times from the upload on. If it is not the `known` one, by its hash, its
+    /// radiance is searched for faults.
     ///
     /// # Errors
     /// When the model or the environment cannot be read, or the device fails.
-    pub(super) fn draw(&mut self, case: &'a Case, times: u32) -> Result<Drawn, CliError> {
+    pub(super) fn draw(&mut self, case: &'a Case, times: u32, known: Option<&str>) -> Result<Drawn, CliError> {
         let start = Instant::now();
         let args = &case.args;
         self.load(&args.subject)?;
@@ -79,28 +87,49 @@ impl<'a> Stage<'a> {
         let scene = self.upload(args, &view)?;
         let load_ms = milliseconds(start);
         let start = Instant::now();
-        let frame = self.frame(args, &view, scene)?;
+        let wanted =
+            Wanted { radiance: case.kind == Kind::Furnace || view.channel.is_some(), display: view.channel.is_none() };
+        let (rgba, radiance) = pixels(self.frame(args, &view, scene, wanted)?, &view);
         let draw_ms = milliseconds(start);
-        let (rgba, radiance) = pixels(frame, &view);
+        let size_px = view.size_px;
+        let picture_hash = golden::picture_hash(size_px.x, size_px.y, &rgba);
+        let fault = if known == Some(&picture_hash) { None } else { self.fault(args, &view, scene)? };
         let mut differing_when_repeated = (times > 1).then_some(0);
         for _ in 1..times {
-            let again = self.draw_anew(args, &view, &rgba)?;
+            let again = self.draw_anew(args, &view, wanted, &rgba)?;
             differing_when_repeated = differing_when_repeated.max(Some(again));
         }
-        let truth = (case.kind == super::report::Kind::Reference).then(|| self.trace(args, &view)).flatten();
+        let truth = (case.kind == Kind::Reference).then(|| self.trace(args, &view)).flatten();
         let scene_hash = self.subject.as_ref().map(|(_, subject)| subject.hash.clone()).unwrap_or_default();
-        let size_px = view.size_px;
-        Ok(Drawn { size_px, rgba, radiance, scene_hash, truth, differing_when_repeated, load_ms, draw_ms })
+        Ok(Drawn {
+            size_px,
+            rgba,
+            picture_hash,
+            radiance,
+            fault,
+            scene_hash,
+            truth,
+            differing_when_repeated,
+            load_ms,
+            draw_ms,
+        })
+    }
+
+    /// Shades once more, to find out where the radiance is no number before it is clamped.
+    fn fault(&mut self, args: &CaseArgs, view: &View, scene: usize) -> Result<Option<String>, CliError> {
+        let view = View { channel: Some(Channel::Nan), background: Background::Transparent, ..view.clone() };
+        let frame = self.frame(args, &view, scene, Wanted { radiance: true, display: false })?;
+        Ok(frame.radiance.as_ref().and_then(golden::fault))
     }
 
     /// Uploads and draws once more; returns how many pixels differ.
-    fn draw_anew(&mut self, args: &CaseArgs, view: &View, rgba: &[u8]) -> Result<usize, CliError> {
+    fn draw_anew(&mut self, args: &CaseArgs, view: &View, wanted: Wanted, rgba: &[u8]) -> Result<usize, CliError> {
         self.target = None;
         if let Some((_, subject)) = &mut self.subject {
             subject.uploaded.clear();
         }
         let scene = self.upload(args, view)?;
-        let (again, _) = pixels(self.frame(args, view, scene)?, view);
+        let (again, _) = pixels(self.frame(args, view, scene, wanted)?, view);
         Ok(rgba.chunks_exact(4).zip(again.chunks_exact(4)).filter(|(a, b)| a != b).count())
     }
 
@@ -184,7 +213,7 @@ impl<'a> Stage<'a> {
         Some(maps)
     }
 
-    fn frame(&mut self, args: &CaseArgs, view: &View, scene: usize) -> Result<CapturedFrame, CliError> {
+    fn frame(&mut self, args: &CaseArgs, view: &View, scene: usize, wanted: Wanted) -> Result<CapturedFrame, CliError> {
         let key = (view.size_px, args.frame.capture_options());
         if self.target.as_ref().is_none_or(|(other, _)| *other != key) {
             self.target = Some((key, CaptureTarget::new(self.gpu, view, key.1)?));
@@ -192,7 +221,6 @@ impl<'a> Stage<'a> {
         let target = self.target.as_ref().map(|(_, target)| target);
         let scene = self.subject.as_mut().and_then(|(_, subject)| subject.uploaded.get_mut(scene));
         let (Some(target), Some((_, scene))) = (target, scene) else { return Err(nothing_is_loaded()) };
-        let wanted = Wanted { radiance: true, display: view.channel.is_none() };
         Ok(submit(self.gpu, &mut self.renderer, scene, view, target, wanted)?.wait(self.gpu)?)
     }
 
@@ -204,12 +232,14 @@ impl<'a> Stage<'a> {
 }
 
 /// Display values and radiance of a frame. A channel has no display values of its own.
-fn pixels(frame: CapturedFrame, view: &View) -> (Vec<u8>, RadianceImage) {
-    let nothing = RadianceImage { width: 0, height: 0, texels: Vec::new() };
-    let radiance = frame.radiance.unwrap_or(nothing);
-    let Some(channel) = view.channel else { return (frame.display.unwrap_or_default(), radiance) };
-    let radiance = debug_view::in_units(channel, radiance, view);
-    (debug_view::picture(channel, &radiance, view), radiance)
+fn pixels(frame: CapturedFrame, view: &View) -> (Vec<u8>, Option<RadianceImage>) {
+    match (view.channel, frame.radiance) {
+        (Some(channel), Some(radiance)) => {
+            let radiance = debug_view::in_units(channel, radiance, view);
+            (debug_view::picture(channel, &radiance, view), Some(radiance))
+        }
+        (_, radiance) => (frame.display.unwrap_or_default(), radiance),
+    }
 }
 
 fn milliseconds(since: Instant) -> f64 {
