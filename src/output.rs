@@ -1,7 +1,6 @@
 //! Writing files: whole or not at all.
 
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -15,16 +14,29 @@ pub(crate) struct WriteError {
 
 /// PNG of straight-alpha sRGB; three channels when every pixel is opaque.
 pub(crate) fn png(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, String> {
+    png_with_texts(width, height, rgba, &[])
+}
+
+/// The same with texts, each under a Latin-1 keyword of 1 to 79 characters (iTXt, PNG 11.3.3.4).
+pub(crate) fn png_with_texts(width: u32, height: u32, rgba: &[u8], texts: &[(&str, &str)]) -> Result<Vec<u8>, String> {
     let opaque = rgba.chunks_exact(4).all(|pixel| pixel[3] == 255);
-    let (pixels, color) = if opaque {
-        (rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect(), ExtendedColorType::Rgb8)
-    } else {
-        (rgba.to_vec(), ExtendedColorType::Rgba8)
-    };
+    let without_alpha = || rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    let pixels: Cow<'_, [u8]> = if opaque { Cow::Owned(without_alpha()) } else { Cow::Borrowed(rgba) };
     let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
-        .write_image(&pixels, width, height, color)
-        .map_err(|error| error.to_string())?;
+    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(if opaque { ::png::ColorType::Rgb } else { ::png::ColorType::Rgba });
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_compression(::png::Compression::Fast);
+    encoder.set_filter(::png::Filter::Adaptive);
+    let write = |mut encoder: ::png::Encoder<'_, &mut Vec<u8>>| -> Result<(), ::png::EncodingError> {
+        for (keyword, text) in texts {
+            encoder.add_itxt_chunk((*keyword).to_owned(), (*text).to_owned())?;
+        }
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&pixels)?;
+        writer.finish()
+    };
+    write(encoder).map_err(|error| error.to_string())?;
     Ok(bytes)
 }
 

@@ -1,8 +1,8 @@
 //! `specula compare`: how far two pictures are apart.
 
-mod conditions;
-mod measure;
-mod pictures;
+pub(in crate::cli) mod conditions;
+pub(in crate::cli) mod measure;
+pub(in crate::cli) mod pictures;
 mod report;
 
 use super::error::CliError;
@@ -12,6 +12,7 @@ use crate::metrics::{Mask, Pair, PairError, Side};
 use crate::scene::{Encoding, Picture};
 use conditions::Condition;
 use measure::{Measured, Metric};
+pub(in crate::cli) use report::number;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -117,11 +118,7 @@ fn write_pictures(args: &CompareArgs, pair: &Pair<'_>, measured: &Measured) -> R
 fn verdict(args: &CompareArgs, measured: &Measured, broken: &[(&Condition, f64)]) -> Result<(), CliError> {
     if let [(condition, value), ..] = broken {
         let more = if broken.len() > 1 { format!(" (and {} more)", broken.len() - 1) } else { String::new() };
-        return Err(CliError::CheckFailed(format!(
-            "{} is {}, not {condition}{more}",
-            condition.name,
-            report::number(*value)
-        )));
+        return Err(CliError::CheckFailed(format!("{} is {}, not {condition}{more}", condition.name, number(*value))));
     }
     if args.fail.is_empty() && measured.differing > 0.0 {
         return Err(CliError::CheckFailed(format!(

@@ -13,6 +13,19 @@ pub(super) struct DriverArgs {
     /// auto takes the GPU (a software driver counts as one), and the CPU reference where there is none.
     #[arg(long, value_enum, default_value = "auto")]
     renderer: RendererArg,
+    #[command(flatten)]
+    frame: FrameArgs,
+    #[command(flatten)]
+    device: DeviceArgs,
+    /// Fail with exit code 3 when there is no adapter, instead of using the CPU reference renderer.
+    #[arg(long)]
+    require_gpu: bool,
+}
+
+/// How a frame is drawn.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Renderer")]
+pub(super) struct FrameArgs {
     /// Samples a pixel of the rasteriser.
     #[arg(long, value_name = "1|4", default_value_t = 4)]
     msaa: u32,
@@ -24,14 +37,17 @@ pub(super) struct DriverArgs {
     /// Precision of the radiance target, and of .exr files.
     #[arg(long, value_enum, default_value = "half")]
     precision: PrecisionArg,
+}
+
+/// Which adapter draws.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Renderer")]
+pub(super) struct DeviceArgs {
     /// Part of the name of the adapter to use.
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     #[arg(long, value_enum)]
     backend: Option<BackendArg>,
-    /// Fail with exit code 3 when there is no adapter, instead of using the CPU reference renderer.
-    #[arg(long)]
-    require_gpu: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -71,12 +87,7 @@ impl From<PrecisionArg> for Precision {
     }
 }
 
-impl DriverArgs {
-    /// Whether the reference renderer is asked for.
-    pub(super) fn is_reference(&self) -> bool {
-        self.renderer == RendererArg::Reference
-    }
-
+impl FrameArgs {
     pub(super) fn precision(&self) -> Precision {
         self.precision.into()
     }
@@ -93,19 +104,9 @@ impl DriverArgs {
             PathArg::Deferred => PathChoice::Deferred,
         }
     }
+}
 
-    /// The flags that make another process of this program draw on the same adapter by the same path.
-    pub(super) fn arguments(&self) -> Vec<String> {
-        let value = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| value().map(|v| v.get_name().to_owned());
-        let flags = [
-            ("--adapter", self.adapter.clone()),
-            ("--backend", self.backend.and_then(|backend| value(&|| backend.to_possible_value()))),
-            ("--path", value(&|| self.path.to_possible_value())),
-            ("--precision", value(&|| self.precision.to_possible_value())),
-        ];
-        flags.into_iter().filter_map(|(flag, value)| Some([flag.to_owned(), value?])).flatten().collect()
-    }
-
+impl DeviceArgs {
     /// The adapter that is asked for.
     pub(super) fn request(&self) -> GpuRequest {
         let backends = self.backend.map(|backend| match backend {
@@ -115,6 +116,43 @@ impl DriverArgs {
             BackendArg::Dx12 => crate::wgpu::Backends::DX12,
         });
         GpuRequest { adapter: self.adapter.clone(), backends }
+    }
+}
+
+impl DriverArgs {
+    /// Whether the reference renderer is asked for.
+    pub(super) fn is_reference(&self) -> bool {
+        self.renderer == RendererArg::Reference
+    }
+
+    pub(super) fn precision(&self) -> Precision {
+        self.frame.precision()
+    }
+
+    pub(super) fn capture_options(&self) -> CaptureOptions {
+        self.frame.capture_options()
+    }
+
+    /// The paths that frames may take on a device.
+    pub(super) fn paths_on(&self, gpu: &Gpu) -> PathChoice {
+        self.frame.paths_on(gpu)
+    }
+
+    /// The flags that make another process of this program draw on the same adapter by the same path.
+    pub(super) fn arguments(&self) -> Vec<String> {
+        let value = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| value().map(|v| v.get_name().to_owned());
+        let flags = [
+            ("--adapter", self.device.adapter.clone()),
+            ("--backend", self.device.backend.and_then(|backend| value(&|| backend.to_possible_value()))),
+            ("--path", value(&|| self.frame.path.to_possible_value())),
+            ("--precision", value(&|| self.frame.precision.to_possible_value())),
+        ];
+        flags.into_iter().filter_map(|(flag, value)| Some([flag.to_owned(), value?])).flatten().collect()
+    }
+
+    /// The adapter that is asked for.
+    pub(super) fn request(&self) -> GpuRequest {
+        self.device.request()
     }
 
     /// The device, or `None` where the reference renderer is asked for, or has to do, of which a warning tells.

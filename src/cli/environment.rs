@@ -7,7 +7,7 @@ use crate::cache::{EnvironmentCache, Outcome};
 use crate::progress::Progress;
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, Quality, Scene};
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, PartialEq, clap::Args)]
 #[command(next_help_heading = "Environment")]
 pub(super) struct EnvironmentArgs {
     /// Panorama (.hdr or .exr), or one of: neutral (a built-in studio), white, black.
@@ -23,7 +23,7 @@ pub(super) struct EnvironmentArgs {
     pub(super) cache: CacheArgs,
 }
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub(super) struct CacheArgs {
     /// Prefilter the panorama anew, and keep nothing of it for the next time. The files that are kept are in the folder that
     /// SPECULA_CACHE_DIR names, or else in the system's place for caches.

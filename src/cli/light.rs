@@ -18,7 +18,7 @@ const EFFICACY: LuminousEfficacy = LuminousEfficacy::MONOCHROMATIC_555_NM;
 /// The outer cone of a spot light that names none, degrees: glTF's default.
 const OUTER_CONE_DEGREES: f64 = 45.0;
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, PartialEq, Eq, clap::Args)]
 #[command(next_help_heading = "Lights")]
 pub(super) struct LightArgs {
     /// Add a light; repeat for more. The environment stays on; --env black leaves the lights alone.

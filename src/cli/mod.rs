@@ -12,6 +12,7 @@ mod driver;
 mod environment;
 mod error;
 mod furnace;
+mod glob;
 mod inspect;
 mod light;
 mod measure;
@@ -23,6 +24,7 @@ mod stability;
 mod stats;
 mod subject;
 mod svg;
+mod test;
 mod tier;
 mod truth;
 mod view;
@@ -57,6 +59,10 @@ enum Command {
     Doctor(doctor::DoctorArgs),
     /// Compare two pictures, PNG with PNG or EXR with EXR: pixels, PSNR, SSIM, FLIP.
     Compare(Box<compare::CompareArgs>),
+    /// Draw the cases of a suite and compare them with their goldens.
+    Test(Box<test::TestArgs>),
+    /// Make pictures of the last `specula test` goldens.
+    Accept(test::AcceptArgs),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
     /// Measure what f32 on this device makes of the shading model, and search it for faults.
@@ -76,6 +82,8 @@ pub fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Test(args) => test::run(&args),
+        Command::Accept(args) => test::accept(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),
     };

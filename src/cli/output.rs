@@ -34,7 +34,7 @@ impl Format {
     }
 }
 
-pub(super) use crate::output::png;
+pub(super) use crate::output::{png, png_with_texts};
 
 /// OpenEXR with R, G, B and A, as half floats or as float32.
 pub(super) fn exr(image: &RadianceImage, precision: Precision) -> Result<Vec<u8>, String> {

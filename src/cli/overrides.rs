@@ -1,6 +1,7 @@
 //! `--override`: numbers of materials set from the command line.
 
 use super::error::CliError;
+use super::glob::matches;
 use crate::math::color::linear_from_srgb;
 use crate::scene::{Disney, Material, Scene, TextureSlot};
 use glam::Vec3;
@@ -40,19 +41,6 @@ fn unknown_material(scene: &Scene, pattern: &str) -> String {
     let names: Vec<&str> = scene.materials.iter().filter_map(|material| material.name.as_deref()).take(8).collect();
     let count = scene.materials.len();
     format!("no material is called `{pattern}`; there are {count}, among them {}", names.join(", "))
-}
-
-/// Whether `text` has the form of `pattern`, in which every `*` stands for any text.
-fn matches(pattern: &str, text: &str) -> bool {
-    let Some((first, rest)) = pattern.split_once('*') else { return pattern == text };
-    let Some(mut text) = text.strip_prefix(first) else { return false };
-    let mut parts: Vec<&str> = rest.split('*').collect();
-    let last = parts.pop().unwrap_or_default();
-    for part in parts {
-        let Some(place) = text.find(part) else { return false };
-        text = &text[place + part.len()..];
-    }
-    text.ends_with(last)
 }
 
 /// Sets one parameter. Leaves the material as it was on an error.

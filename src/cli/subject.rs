@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-#[derive(Debug, clap::Args)]
+#[derive(Debug, PartialEq, clap::Args)]
 pub(super) struct SubjectArgs {
     /// glTF model (.gltf or .glb); - reads it from stdin.
     #[arg(required = true)]
@@ -58,6 +58,16 @@ impl SubjectArgs {
     /// Whether prefiltered panoramas are kept.
     pub(super) fn cache(&self) -> &CacheArgs {
         &self.environment.cache
+    }
+
+    /// Keeps prefiltered panoramas as `cache` says.
+    pub(super) fn set_cache(&mut self, cache: &CacheArgs) {
+        self.environment.cache = cache.clone();
+    }
+
+    /// What lights the scene from around, as it was asked for: a file, or the name of a built-in environment.
+    pub(super) fn environment_source(&self) -> &str {
+        &self.environment.env
     }
 
     /// What lights the scene from around, as it was asked for, without the folder of a file.

@@ -13,6 +13,7 @@ mod document;
 mod environment;
 mod error;
 mod extensions;
+mod files;
 mod geometry;
 mod images;
 mod instancing;
@@ -35,6 +36,7 @@ mod vertices;
 pub use environment::{environment_from_path, environment_from_slice};
 pub use error::{ImportError, Place, Warning};
 pub use extensions::SUPPORTED_EXTENSIONS;
+pub use files::model_files;
 pub use limits::Limits;
 pub use picture::{picture_from_path, picture_from_slice};
 

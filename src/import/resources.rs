@@ -31,10 +31,15 @@ impl<'a> Resources<'a> {
 
     /// The bytes behind `uri`, which the document gives at `pointer`.
     pub(super) fn load(&self, uri: &str, pointer: &str) -> Result<Vec<u8>, Fault> {
-        match scheme(uri) {
-            Some(scheme) if scheme.eq_ignore_ascii_case("data") => self.decode_data(&uri[scheme.len() + 1..], pointer),
-            _ => self.read_file(uri, pointer),
+        match data_of(uri) {
+            Some(data) => self.decode_data(data, pointer),
+            None => self.read_file(uri, pointer),
         }
+    }
+
+    /// The file that `uri` names; `None` where it holds its bytes itself.
+    pub(super) fn file(&self, uri: &str, pointer: &str) -> Result<Option<PathBuf>, Fault> {
+        if data_of(uri).is_some() { Ok(None) } else { self.resolve(uri, pointer).map(Some) }
     }
 
     /// The part of a data URI after `data:` (RFC 2397).
@@ -97,6 +102,12 @@ impl<'a> Resources<'a> {
         }
         Ok(path)
     }
+}
+
+/// What stands after `data:` in a data URI.
+fn data_of(uri: &str) -> Option<&str> {
+    let scheme = scheme(uri).filter(|scheme| scheme.eq_ignore_ascii_case("data"))?;
+    Some(&uri[scheme.len() + 1..])
 }
 
 /// The scheme of a uri, without its colon (RFC 3986, 3.1). A drive letter counts as one.

@@ -26,6 +26,12 @@ pub fn differing_pixels(pair: &Pair<'_>) -> f64 {
     differing as f64 / count as f64
 }
 
+/// The largest difference of the four channels of one pixel, by its index.
+pub fn pixel_max_abs(pair: &Pair<'_>, index: usize) -> f64 {
+    let [a, b] = [pair.actual(), pair.expected()].map(|picture| picture.texels[index].as_dvec4());
+    (a - b).abs().max_element()
+}
+
 /// The largest difference over pixels and the four channels.
 pub fn max_abs(pair: &Pair<'_>) -> MaxAbs {
     let mut worst = MaxAbs { value: -1.0, at: (0, 0), channel: CHANNELS[0], actual: 0.0, expected: 0.0 };

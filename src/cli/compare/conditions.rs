@@ -7,13 +7,13 @@ use std::str::FromStr;
 
 /// A bound on a measurement.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Condition {
+pub(in crate::cli) struct Condition {
     /// `max-abs`, `flip.p99`.
-    pub(super) name: String,
+    pub(in crate::cli) name: String,
     /// What the name belongs to.
-    pub(super) metric: Metric,
+    pub(in crate::cli) metric: Metric,
     comparison: Comparison,
-    bound: f64,
+    pub(in crate::cli) bound: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +29,17 @@ const SIGNS: [(&str, Comparison); 4] =
     [("<=", Comparison::AtMost), (">=", Comparison::AtLeast), ("<", Comparison::Below), (">", Comparison::Above)];
 
 impl Condition {
-    fn holds(&self, value: f64) -> bool {
+    /// Whether small measurements are good ones.
+    pub(in crate::cli) fn is_upper_bound(&self) -> bool {
+        matches!(self.comparison, Comparison::AtMost | Comparison::Below)
+    }
+
+    /// `<=`, `<`, `>=` or `>`.
+    pub(in crate::cli) fn sign(&self) -> &'static str {
+        SIGNS.iter().find(|(_, comparison)| *comparison == self.comparison).map_or("", |(sign, _)| sign)
+    }
+
+    pub(in crate::cli) fn holds(&self, value: f64) -> bool {
         match self.comparison {
             Comparison::AtMost => value <= self.bound,
             Comparison::AtLeast => value >= self.bound,
@@ -51,22 +61,25 @@ impl FromStr for Condition {
         let metric = Metric::of_measurement(name).ok_or_else(|| {
             format!("{name:?} is no measurement; there are {}", Metric::all_measurements().join(", "))
         })?;
-        let (number, unit) = bound.strip_suffix('%').map_or((bound, 1.0), |number| (number.trim(), 0.01));
-        let bound = number.parse::<f64>().ok().filter(|bound| bound.is_finite());
-        let bound = bound.ok_or_else(|| format!("{number:?} is no number to compare {name} with"))? * unit;
+        let bound = share(bound).ok_or_else(|| format!("{bound:?} is no number to compare {name} with"))?;
         Ok(Self { name: name.to_owned(), metric, comparison, bound })
     }
 }
 
+/// `0.5` or `50%`.
+pub(in crate::cli) fn share(text: &str) -> Option<f64> {
+    let (number, unit) = text.trim().strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    Some(number.trim().parse::<f64>().ok().filter(|number| number.is_finite())? * unit)
+}
+
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sign = SIGNS.iter().find(|(_, comparison)| *comparison == self.comparison).map_or("", |(sign, _)| sign);
-        write!(f, "{sign} {}", self.bound)
+        write!(f, "{} {}", self.sign(), self.bound)
     }
 }
 
 /// The conditions that do not hold, with what was measured.
-pub(super) fn broken<'a>(
+pub(in crate::cli) fn broken<'a>(
     conditions: &'a [Condition],
     measured: &Measured,
 ) -> Result<Vec<(&'a Condition, f64)>, CliError> {

@@ -9,7 +9,7 @@ use crate::scene::Encoding;
 use clap::ValueEnum;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Metric {
+pub(in crate::cli) enum Metric {
     /// Share of the pixels that differ at all.
     Pixels,
     /// Largest difference of one channel, alpha included, in the numbers of the files.
@@ -40,15 +40,24 @@ impl Metric {
         }
     }
 
-    pub(super) fn of_measurement(name: &str) -> Option<Self> {
+    pub(in crate::cli) fn of_measurement(name: &str) -> Option<Self> {
         Self::value_variants().iter().copied().find(|metric| metric.measurements().contains(&name))
     }
 
-    pub(super) fn all_measurements() -> Vec<&'static str> {
+    /// What [`measure`] finds between a picture and itself.
+    pub(in crate::cli) fn of_equal_pictures(self) -> f64 {
+        match self {
+            Self::Pixels | Self::MaxAbs | Self::RelativeRms | Self::Flip | Self::HdrFlip => 0.0,
+            Self::Psnr => f64::INFINITY,
+            Self::Ssim => 1.0,
+        }
+    }
+
+    pub(in crate::cli) fn all_measurements() -> Vec<&'static str> {
         Self::value_variants().iter().flat_map(|metric| metric.measurements()).copied().collect()
     }
 
-    fn suits(self, encoding: Encoding) -> bool {
+    pub(in crate::cli) fn suits(self, encoding: Encoding) -> bool {
         match self {
             Self::Pixels | Self::MaxAbs | Self::RelativeRms => true,
             Self::Psnr | Self::Ssim | Self::Flip => encoding == Encoding::Srgb,
@@ -59,7 +68,7 @@ impl Metric {
 
 /// The metrics that were asked for, by name, by a condition or by the heat map; all that suit the pictures if no name
 /// was given.
-pub(super) fn chosen(
+pub(in crate::cli) fn chosen(
     named: &[Metric],
     conditions: &[Condition],
     heat_map: bool,
@@ -78,24 +87,24 @@ pub(super) fn chosen(
 
 /// A number with its name, and what else there is to say about it.
 #[derive(Debug)]
-pub(super) struct Measurement {
-    pub(super) name: &'static str,
+pub(in crate::cli) struct Measurement {
+    pub(in crate::cli) name: &'static str,
     /// `None` where the picture is too small for it.
-    pub(super) value: Option<f64>,
-    pub(super) remark: String,
+    pub(in crate::cli) value: Option<f64>,
+    pub(in crate::cli) remark: String,
 }
 
 #[derive(Debug)]
-pub(super) struct Measured {
-    pub(super) measurements: Vec<Measurement>,
+pub(in crate::cli) struct Measured {
+    pub(in crate::cli) measurements: Vec<Measurement>,
     /// Share of the pixels that differ, whatever was asked for.
-    pub(super) differing: f64,
+    pub(in crate::cli) differing: f64,
     /// The FLIP error of every pixel, if that was among the metrics.
-    pub(super) flip_map: Option<ErrorMap>,
+    pub(in crate::cli) flip_map: Option<ErrorMap>,
 }
 
 impl Measured {
-    pub(super) fn value(&self, name: &str) -> Option<f64> {
+    pub(in crate::cli) fn value(&self, name: &str) -> Option<f64> {
         self.measurements.iter().find(|measurement| measurement.name == name)?.value
     }
 
@@ -109,7 +118,7 @@ impl Measured {
     }
 }
 
-pub(super) fn measure(pair: &Pair<'_>, metrics: &[Metric]) -> Measured {
+pub(in crate::cli) fn measure(pair: &Pair<'_>, metrics: &[Metric]) -> Measured {
     let differing = difference::differing_pixels(pair);
     let mut measured = Measured { measurements: Vec::new(), differing, flip_map: None };
     for &metric in metrics {
@@ -143,4 +152,25 @@ pub(super) fn measure(pair: &Pair<'_>, metrics: &[Metric]) -> Measured {
 /// No place is the worst where all are right.
 fn remark_if(worth_it: bool, remark: String) -> String {
     if worth_it { remark } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Picture;
+    use glam::Vec4;
+
+    #[test]
+    fn a_picture_is_equal_to_itself() {
+        for encoding in [Encoding::Srgb, Encoding::Linear] {
+            let texels = (0..24 * 24).map(|i| Vec4::new((i % 7) as f32 / 7.0, (i % 24) as f32 / 24.0, 0.5, 1.0));
+            let picture = Picture { width: 24, height: 24, encoding, texels: texels.collect() };
+            let pair = Pair::new(&picture, &picture, None).unwrap();
+            for metric in Metric::value_variants().iter().filter(|metric| metric.suits(encoding)) {
+                for name in metric.measurements() {
+                    assert_eq!(measure(&pair, &[*metric]).value(name), Some(metric.of_equal_pictures()), "{name}");
+                }
+            }
+        }
+    }
 }

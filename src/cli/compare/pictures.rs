@@ -9,7 +9,7 @@ use glam::{Vec3, Vec4};
 use std::path::Path;
 
 /// The file with the differences of the pixels that count; others are black.
-pub(super) fn difference(path: &Path, pair: &Pair<'_>) -> Result<Vec<u8>, CliError> {
+pub(in crate::cli) fn difference(path: &Path, pair: &Pair<'_>) -> Result<Vec<u8>, CliError> {
     let texels = pair.actual().texels.iter().zip(&pair.expected().texels).enumerate();
     let signed: Vec<Vec3> =
         texels.map(|(i, (a, b))| if pair.is_selected(i) { (*a - *b).truncate() } else { Vec3::ZERO }).collect();
@@ -30,7 +30,7 @@ pub(super) fn difference(path: &Path, pair: &Pair<'_>) -> Result<Vec<u8>, CliErr
 }
 
 /// The file with the errors of the pixels that count; others are black.
-pub(super) fn heat_map(path: &Path, pair: &Pair<'_>, map: &ErrorMap) -> Result<Vec<u8>, CliError> {
+pub(in crate::cli) fn heat_map(path: &Path, pair: &Pair<'_>, map: &ErrorMap) -> Result<Vec<u8>, CliError> {
     if Format::of(path)? != Format::Png {
         return Err(CliError::Usage(format!("{}: a heat map is a .png", path.display())));
     }

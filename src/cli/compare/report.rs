@@ -26,7 +26,7 @@ pub(super) fn text(args: &CompareArgs, pair: &Pair<'_>, measured: &Measured) -> 
 }
 
 /// A value with the digits that matter.
-pub(super) fn number(value: f64) -> String {
+pub(in crate::cli) fn number(value: f64) -> String {
     if value == 0.0 || value.abs() >= 1e-3 { format!("{value:.6}") } else { format!("{value:.3e}") }
 }
 

@@ -99,8 +99,9 @@ impl Resources {
     pub(super) fn new(gpu: &Gpu, features: ForwardFeatures, sun_nits: f32) -> Result<Self, ProofError> {
         let sky = Environment::new(sun(sun_nits));
         let maps = environment::bake(&sky.image, &Default::default(), &Silent);
-        let environment = GpuEnvironment::new(&gpu.device, &mut Staging::new(&gpu.device, &gpu.queue), &sky, &maps, None)
-            .map_err(|error| ProofError::Row { row: "fuzz".into(), reason: error.to_string() })?;
+        let environment =
+            GpuEnvironment::new(&gpu.device, &mut Staging::new(&gpu.device, &gpu.queue), &sky, &maps, None)
+                .map_err(|error| ProofError::Row { row: "fuzz".into(), reason: error.to_string() })?;
         let (device, queue) = (&gpu.device, &gpu.queue);
         let disney_table = table(&disney::TABLE).upload(device, queue);
         Ok(Self { features, shared: shared_textures(device, queue), disney_table, environment })
