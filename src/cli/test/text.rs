@@ -1,6 +1,6 @@
 //! A run for people: a line for each case, and what is needed to act on those that failed.
 
-use super::report::{CaseReport, MetricReport, Status, SuiteReport};
+use super::report::{CaseReport, Kind, MetricReport, Status, SuiteReport};
 use crate::cli::compare::number;
 use std::fmt::Write;
 use std::path::Path;
@@ -53,7 +53,7 @@ fn write_case(text: &mut String, case: &CaseReport) -> std::fmt::Result {
     }
     let paths = [
         ("actual", &case.paths.actual),
-        ("golden", &case.paths.golden),
+        (if case.kind == Kind::Reference { "truth" } else { "golden" }, &case.paths.golden),
         ("difference", &case.paths.difference),
         ("flip", &case.paths.heat_map),
     ];
@@ -77,7 +77,7 @@ fn write_case(text: &mut String, case: &CaseReport) -> std::fmt::Result {
 }
 
 /// `flip.mean is 0.0213, not <= 0.004 (suite.toml:12)`.
-pub(super) fn broken(metric: &MetricReport) -> String {
+fn broken(metric: &MetricReport) -> String {
     let value = metric.value.map_or_else(|| "not a finite number".to_owned(), number);
     let remark = if metric.remark.is_empty() { String::new() } else { format!("; {}", metric.remark) };
     let MetricReport { name, comparison, limit, limit_from, .. } = metric;
