@@ -12,6 +12,7 @@ mod culling;
 mod disney;
 mod features;
 mod frames;
+mod golden_suites;
 mod goldens;
 mod grazing;
 mod inspect;

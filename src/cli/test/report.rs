@@ -128,7 +128,7 @@ pub(in crate::cli) struct MetricReport {
     /// `<=`, `<`, `>=` or `>`.
     pub(in crate::cli) comparison: String,
     pub(in crate::cli) limit: f64,
-    /// `suite.toml:12, [defaults]`.
+    /// `suite.toml:12`, or a flag of the run.
     pub(in crate::cli) limit_from: String,
     pub(in crate::cli) holds: bool,
     /// The place of the worst pixel, a unit, and the like.
@@ -273,7 +273,7 @@ pub(in crate::cli) mod tests {
             value: Some(value),
             comparison: "<=".into(),
             limit: 0.004,
-            limit_from: "suite.toml:3, [defaults]".into(),
+            limit_from: "suite.toml:3".into(),
             holds,
             remark: String::new(),
         };

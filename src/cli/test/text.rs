@@ -1,7 +1,7 @@
 //! A run for people: a line for each case, and what is needed to act on those that failed.
 
 use super::publish;
-use super::report::{CaseReport, MetricReport, Status, SuiteReport};
+use super::report::{CaseReport, Kind, MetricReport, Status, SuiteReport};
 use crate::cli::compare::number;
 use std::fmt::Write;
 use std::path::Path;
@@ -54,7 +54,7 @@ fn write_case(text: &mut String, case: &CaseReport) -> std::fmt::Result {
     }
     let paths = [
         ("actual", &case.paths.actual),
-        ("golden", &case.paths.golden),
+        (if case.kind == Kind::Reference { "truth" } else { "golden" }, &case.paths.golden),
         ("difference", &case.paths.difference),
         ("flip", &case.paths.heat_map),
     ];
