@@ -1,6 +1,7 @@
 //! What one picture keeps from frame to frame: its plan, its buffers, and what it shows.
 
 use super::RadianceTarget;
+use super::paint::Painting;
 use crate::frame::{Culling, FramePlan, PlanOptions, Planner};
 use crate::gpu::KeptUniform;
 use crate::gpu_scene::GpuScene;
@@ -28,6 +29,7 @@ pub struct FrameState {
     pub(super) background: KeptUniform<wgpu::TextureView>,
     pub(super) display: KeptUniform<wgpu::TextureView>,
     pub(super) deferred: Option<DeferredGroups>,
+    pub(super) painting: Option<Painting>,
     drawn: Option<Drawn>,
     /// The view that was displayed last, from which radiance and where.
     displayed: Option<(View, wgpu::TextureView, wgpu::TextureView)>,
