@@ -5,6 +5,7 @@
 
 mod frame_state;
 mod host;
+mod lifetime;
 mod paint;
 mod pass_format;
 mod target;
@@ -12,6 +13,7 @@ mod uniforms;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, is_worth_deferring, plan};
+use crate::gpu::Identity;
 use crate::gpu::formats::{self, Precision};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
 use crate::passes::{
@@ -106,6 +108,7 @@ pub struct Renderer {
     display: DisplayPipelines,
     /// For hosts that have no depth buffer.
     own_depth: Option<wgpu::TextureView>,
+    pub(crate) identity: Identity,
     /// `Off` draws the same pictures with more work.
     pub culling: Culling,
 }
@@ -127,6 +130,7 @@ impl Renderer {
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
             own_depth: None,
+            identity: Identity::default(),
             culling: Culling::On,
         }
     }

@@ -118,8 +118,8 @@ pub fn draw(
         if bound_pipeline.replace(draw.pipeline) != Some(draw.pipeline) {
             pass.set_pipeline(pipeline);
         }
-        if bound_material.replace(material) != Some(material) {
-            pass.set_bind_group(1, material, &[]);
+        if bound_material.replace(&material.group) != Some(&material.group) {
+            pass.set_bind_group(1, &material.group, &[]);
         }
         let place = (drawable.mesh, drawable.primitive);
         if bound_primitive.replace(place) != Some(place) {

@@ -3,6 +3,7 @@
 use super::uniforms::frame_uniform;
 use super::{FrameState, FrameStats, PassFormat, RenderError, Renderer, check_size, frame_stats};
 use crate::frame::{PlanOptions, clip_from_origin};
+use crate::gpu::Identity;
 use crate::gpu_scene::GpuScene;
 use crate::passes::{BackgroundPass, draw};
 use crate::scene::View;
@@ -11,8 +12,7 @@ use glam::UVec2;
 /// What a frame binds, kept in the [`FrameState`] from its preparation to the pass.
 #[derive(Debug)]
 pub(super) struct Painting {
-    /// The instances of the scene that was prepared: they tell scenes apart.
-    instances: wgpu::Buffer,
+    scene: Identity,
     frame_group: wgpu::BindGroup,
     pipelines: Vec<Option<wgpu::RenderPipeline>>,
     panorama: Option<BackgroundPass>,
@@ -59,9 +59,9 @@ impl Renderer {
         let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
         self.forward.prepare(device, &self.sources, scene, &state.plan, target)?;
         let pipelines = self.forward.of_plan(&state.plan, target).into_iter().map(Option::<&_>::cloned).collect();
-        let instances = scene.instances.clone();
+        let identity = scene.identity.clone();
         let size_px = view.size_px;
-        state.painting = Some(Painting { instances, frame_group, pipelines, panorama, at_px, size_px });
+        state.painting = Some(Painting { scene: identity, frame_group, pipelines, panorama, at_px, size_px });
         state.forget();
         state.prepared(scene).ok_or(RenderError::NotPrepared)
     }
@@ -70,7 +70,7 @@ impl Renderer {
 impl FrameState {
     /// The frame that was prepared last, if it was one of this scene.
     pub fn prepared<'a>(&'a self, scene: &'a GpuScene) -> Option<Prepared<'a>> {
-        let painting = self.painting.as_ref().filter(|painting| painting.instances == scene.instances)?;
+        let painting = self.painting.as_ref().filter(|painting| painting.scene == scene.identity)?;
         Some(Prepared { scene, state: self, painting })
     }
 }

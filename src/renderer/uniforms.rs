@@ -27,7 +27,7 @@ pub(super) fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
     FrameUniform {
         clip_from_world: clip_from_origin(view, origin_in_world).to_cols_array_2d(),
         viewer: viewer.as_vec4().to_array(),
-        light_count: lights.map_or(0, |lights| lights.lit),
+        light_count: lights.map_or(0, |lights| lights.lit()),
         channel,
         channel_index,
         channel_components,

@@ -36,6 +36,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("passes", &["frame", "gpu", "gpu_scene", "math", "scene", "shader"]),
     ("renderer", &["bake", "frame", "gpu", "gpu_scene", "math", "passes", "scene", "shader"]),
     ("capture", &["frame", "gpu", "gpu_scene", "math", "passes", "renderer", "scene"]),
+    // Scenes of a host, edited while they are shown.
+    ("embed", &["gpu", "gpu_scene", "renderer", "scene"]),
     // What the shaders are held to: WGSL beside the truth, on a device.
     ("proof", &["bake", "gpu", "gpu_scene", "math", "progress", "reference", "renderer", "scene", "shader"]),
     // The program: everything.
@@ -73,6 +75,7 @@ const EVERYTHING: &[&str] = &[
     "cache",
     "capture",
     "cli",
+    "embed",
     "frame",
     "gpu",
     "gpu_scene",

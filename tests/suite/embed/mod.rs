@@ -1,7 +1,9 @@
 //! Frames in other people's passes.
 
+mod edits;
 #[path = "../../../examples/host/mod.rs"]
 mod host;
+mod lifetime;
 mod mixing;
 mod passes;
 
