@@ -171,7 +171,7 @@ impl Attachments {
             texture.create_view(&Default::default())
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let readable = attachment | wgpu::TextureUsages::COPY_SRC;
+        let readable = attachment | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         let many = pass.samples > 1;
         Self {
             color: texture(pass.color, pass.samples, if many { attachment } else { readable }),
@@ -231,6 +231,17 @@ pub(crate) fn read(
     let readback: Readback = read_texture(&gpu.device, &mut encoder, picture);
     gpu.queue.submit([encoder.finish()]);
     readback.wait(gpu)
+}
+
+/// Writes a picture of sRGB bytes as PNG.
+///
+/// # Errors
+/// Where the file cannot be written.
+pub(crate) fn save(name: &str, size_px: UVec2, rgba: &[u8]) -> Result<(), Box<dyn std::error::Error>> {
+    let path = std::env::args().nth(1).unwrap_or_else(|| format!("docs/pictures/{name}.png"));
+    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
+    image::save_buffer(path, &rgb, size_px.x, size_px.y, image::ColorType::Rgb8)?;
+    Ok(())
 }
 
 /// A camera that looks at the origin.

@@ -1,6 +1,7 @@
 //! Frames in other people's passes.
 
 mod edits;
+mod examples;
 #[path = "../../../examples/host/mod.rs"]
 mod host;
 mod lifetime;
