@@ -36,13 +36,16 @@ pub(crate) fn picture(gpu: &Gpu) -> Result<Vec<u8>, Failure> {
     let pass =
         PassFormat { color: formats::CAPTURED_DISPLAY, depth: None, output: Output::Display, ..PassFormat::own(4) };
     let attachments = Attachments::new(device, &pass, SIZE_PX);
-    let (framed, center) = (default_view(&model, PART_PX), model.bounds().center());
-    let distance = framed.camera.position_in_world().distance(center);
+    // Around what the file's own camera sees, on the axis of the scene.
+    let framed = model.cameras_in_world().into_iter().next().ok_or("the showcase has no camera")?;
+    let (eye, forward) = (framed.position_in_world(), framed.forward_in_world());
+    let distance = eye.x.hypot(eye.z);
+    let center = eye + distance / forward.x.hypot(forward.z) * forward;
     let view = |(theta, phi): (f64, f64)| {
         let out = DVec3::new(phi.cos() * theta.sin(), phi.sin(), phi.cos() * theta.cos());
-        let Camera { projection, near_m, far_m, .. } = framed.camera;
+        let Camera { projection, near_m, far_m, .. } = framed;
         let camera = Camera::look_at(center + distance * out, center, DVec3::Y, projection, near_m, far_m);
-        View { camera, background: Background::Environment, ..framed.clone() }
+        View { camera, background: Background::Environment, ..default_view(&model, PART_PX) }
     };
     let views = [(0.0, 0.15), (0.8, 0.3), (-0.9, 0.5), (0.3, 1.3)].map(view);
     let mut states: [FrameState; 4] = Default::default();

@@ -294,7 +294,7 @@ impl Renderer {
             if let Some(pixel) = target.pixel {
                 pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
             }
-            let pipelines = self.forward.of_plan(&state.plan, forward_target);
+            let pipelines: Vec<_> = self.forward.of_plan(&state.plan, forward_target).collect();
             draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.opaque);
             if let Some(panorama) = &panorama {
                 panorama.draw(&mut pass);

@@ -93,15 +93,19 @@ impl ForwardPipelines {
     }
 
     /// The pipelines of a prepared plan, in its order.
-    pub fn of_plan(&self, plan: &FramePlan, target: ForwardTarget) -> Vec<Option<&wgpu::RenderPipeline>> {
-        plan.pipelines.iter().map(|key| self.pipelines.get(&(*key, target))).collect()
+    pub fn of_plan(
+        &self,
+        plan: &FramePlan,
+        target: ForwardTarget,
+    ) -> impl Iterator<Item = Option<wgpu::RenderPipeline>> {
+        plan.pipelines.iter().map(move |key| self.pipelines.get(&(*key, target)).cloned())
     }
 }
 
 /// Records `draws` of a plan with its pipelines. State that two draws in a row share is set once.
 pub fn draw(
     pass: &mut wgpu::RenderPass<'_>,
-    pipelines: &[Option<&wgpu::RenderPipeline>],
+    pipelines: &[Option<wgpu::RenderPipeline>],
     scene: &GpuScene,
     frame_group: &wgpu::BindGroup,
     draws: &[Draw],
@@ -114,7 +118,7 @@ pub fn draw(
     for draw in draws {
         let drawable = &scene.drawables.draws[draw.drawable];
         let GpuDraw { primitive, material } = &scene.draws[draw.drawable];
-        let Some(pipeline) = pipelines[draw.pipeline] else { continue };
+        let Some(pipeline) = &pipelines[draw.pipeline] else { continue };
         if bound_pipeline.replace(draw.pipeline) != Some(draw.pipeline) {
             pass.set_pipeline(pipeline);
         }

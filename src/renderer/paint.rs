@@ -47,7 +47,7 @@ impl Renderer {
         pass: &PassFormat,
         state: &'a mut FrameState,
     ) -> Result<Prepared<'a>, RenderError> {
-        state.painting = None;
+        let mut pipelines = state.painting.take().map(|painting| painting.pipelines).unwrap_or_default();
         check_size(device, view)?;
         let target = pass.forward_target(device, view)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
@@ -58,7 +58,8 @@ impl Renderer {
         uniform.clip_from_world = pass.clip(&view.camera, own).to_cols_array_2d();
         let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
         self.forward.prepare(device, &self.sources, scene, &state.plan, target)?;
-        let pipelines = self.forward.of_plan(&state.plan, target).into_iter().map(Option::<&_>::cloned).collect();
+        pipelines.clear();
+        pipelines.extend(self.forward.of_plan(&state.plan, target));
         let identity = scene.identity.clone();
         let size_px = view.size_px;
         state.painting = Some(Painting { scene: identity, frame_group, pipelines, panorama, at_px, size_px });
@@ -82,12 +83,11 @@ impl Prepared<'_> {
         let Painting { frame_group, pipelines, panorama, at_px, size_px, .. } = self.painting;
         let (at, size) = (at_px.as_vec2(), size_px.as_vec2());
         pass.set_viewport(at.x, at.y, size.x, size.y, 0.0, 1.0);
-        let pipelines: Vec<_> = pipelines.iter().map(Option::as_ref).collect();
-        draw(pass, &pipelines, self.scene, frame_group, &self.state.plan.opaque);
+        draw(pass, pipelines, self.scene, frame_group, &self.state.plan.opaque);
         if let Some(panorama) = panorama {
             panorama.draw(pass);
         }
-        draw(pass, &pipelines, self.scene, frame_group, &self.state.plan.blended);
+        draw(pass, pipelines, self.scene, frame_group, &self.state.plan.blended);
     }
 
     /// What the frame consists of.

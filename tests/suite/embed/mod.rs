@@ -1,7 +1,9 @@
 //! Frames in other people's passes.
 
+mod api;
 mod edits;
 mod examples;
+#[allow(clippy::duplicate_mod, reason = "each example has its own")]
 #[path = "../../../examples/host/mod.rs"]
 mod host;
 mod lifetime;

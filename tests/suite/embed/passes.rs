@@ -186,6 +186,22 @@ fn views_lie_side_by_side_and_what_is_there_stays() {
 }
 
 #[test]
+fn preparing_a_frame_once_more_allocates_nothing() {
+    let gpu = gpu(Precision::Half);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue);
+    let mut scene = upload(&gpu, &renderer, &in_studio());
+    let (view, pass) = (View { background: Background::Environment, ..view() }, PassFormat::own(4));
+    let mut state = FrameState::default();
+    let mut prepare = || {
+        let device = (&gpu.device, &gpu.queue);
+        renderer.prepare_frame(device, &mut scene, (&view, UVec2::ZERO), &pass, &mut state).unwrap().stats().draws
+    };
+    let draws = prepare();
+    let allocations = allocation_counter::measure(|| assert_eq!((0..100).map(|_| prepare()).sum::<u32>(), 100 * draws));
+    assert_eq!((allocations.count_total, allocations.bytes_total), (0, 0));
+}
+
+#[test]
 fn what_cannot_be_drawn_is_said_before_anything_is_recorded() {
     let gpu = gpu(Precision::Half);
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue);
