@@ -111,7 +111,7 @@ impl CaptureTarget {
         // One pixel is not worth passes over all.
         let path = if pixel.is_some() { RenderPath::Forward } else { renderer.path(scene, view, forward_target) };
         let surfaces = self.surfaces(gpu, path);
-        let ForwardTarget { format, samples } = forward_target;
+        let ForwardTarget { format, samples, .. } = forward_target;
         RadianceTarget { format, samples, surfaces, depth: &self.depth, pixel }
     }
 
@@ -139,7 +139,7 @@ impl CaptureTarget {
     }
 
     pub fn forward_target(&self) -> ForwardTarget {
-        ForwardTarget { format: self.options.precision.hdr_format(), samples: self.options.samples }
+        ForwardTarget::radiance(self.options.precision.hdr_format(), self.options.samples)
     }
 }
 

@@ -8,6 +8,7 @@ pub mod cache;
 pub mod capture;
 #[cfg(feature = "cli")]
 pub mod cli;
+pub mod embed;
 pub mod frame;
 pub mod gpu;
 pub mod gpu_scene;

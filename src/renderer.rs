@@ -4,28 +4,32 @@
 //! caller's encoder; only uploads are submitted, and waited for, so that little is staged at a time.
 
 mod frame_state;
+mod host;
+mod lifetime;
+mod paint;
+mod pass_format;
 mod target;
+mod uniforms;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
-use crate::frame::{
-    Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, clip_from_origin, is_worth_deferring, plan,
-};
+use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, is_worth_deferring, plan};
+use crate::gpu::Identity;
 use crate::gpu::formats::{self, Precision};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
-use crate::math::color::linear_from_srgb;
 use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
     ForwardPipelines, ForwardTarget, draw,
 };
-use crate::scene::{
-    Background, Camera, Channel, EnvironmentMaps, LightSource, Projection, Scene, ToneMap, Topology, View,
-};
-use crate::shader::types::{BackgroundUniform, DisplayUniform, FrameUniform};
-use crate::shader::{DisplayFeatures, ShaderError, ShaderSources, channel_uniform};
-use glam::{DMat3, DVec2, DVec3, DVec4};
+use crate::scene::{Background, EnvironmentMaps, Scene, Topology, View};
+use crate::shader::types::FrameUniform;
+use crate::shader::{DisplayFeatures, ShaderError, ShaderSources};
 use std::sync::Arc;
+use uniforms::{background_uniform, display_uniform, frame_uniform};
 
 pub use frame_state::FrameState;
+pub use host::{HostTarget, HostView};
+pub use paint::Prepared;
+pub use pass_format::{Output, PassFormat};
 pub use target::{RadianceTarget, SurfaceTarget};
 
 /// Why a frame could not be recorded.
@@ -38,6 +42,12 @@ pub enum RenderError {
     Shader(#[from] ShaderError),
     #[error("this frame cannot be shaded in a pass of its own; Renderer::path says which can")]
     NotDeferrable,
+    #[error("{feature} needs a pass of its own: encode_radiance and encode_display have one")]
+    NeedsOwnPass { feature: &'static str },
+    #[error("no frame of this scene has been prepared")]
+    NotPrepared,
+    #[error("the pass cannot be drawn into: {0}")]
+    Pass(String),
     #[error("the picture is {width} x {height} pixels; both must be between 1 and {allowed}")]
     Size { width: u32, height: u32, allowed: u32 },
 }
@@ -96,6 +106,9 @@ pub struct Renderer {
     deferred: DeferredPipelines,
     background: BackgroundPipeline,
     display: DisplayPipelines,
+    /// For hosts that have no depth buffer.
+    own_depth: Option<wgpu::TextureView>,
+    pub(crate) identity: Identity,
     /// `Off` draws the same pictures with more work.
     pub culling: Culling,
 }
@@ -116,6 +129,8 @@ impl Renderer {
             deferred: DeferredPipelines::default(),
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
+            own_depth: None,
+            identity: Identity::default(),
             culling: Culling::On,
         }
     }
@@ -248,20 +263,13 @@ impl Renderer {
         state: &mut FrameState,
     ) -> Result<FrameStats, RenderError> {
         check_size(device, view)?;
-        let forward_target = ForwardTarget { format: target.format, samples: target.samples };
+        let forward_target = ForwardTarget::radiance(target.format, target.samples);
         let options = PlanOptions { samples: target.samples, culling: self.culling };
         let visible = state.plan_frame((device, queue), scene, view, options);
-        let panorama = self.panorama((device, queue), scene, view, target, state)?;
-        let origin_in_world = scene.drawables.origin_in_world;
-        let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
+        let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
+        let panorama = self.panorama((device, queue), scene, view, (forward_target, under), state)?;
         let uniform = frame_uniform(scene, view);
-        let frame_group = state.frame.group(
-            (device, queue),
-            "frame",
-            bytemuck::bytes_of(&uniform),
-            (scene.instances.clone(), visible, clusters.as_ref().map(|clusters| clusters.table.clone())),
-            |frame, (_, visible, _)| scene.frame_group(device, &self.shared, (frame, visible), clusters.as_ref()),
-        );
+        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
             1.0
@@ -269,14 +277,14 @@ impl Renderer {
             0.0
         };
         let path = if let SurfaceTarget::Deferred { visibility, covered, color: radiance } = target.surfaces {
-            let (ForwardTarget { format, samples }, depth, size_px) = (forward_target, target.depth, view.size_px);
+            let (ForwardTarget { format, samples, .. }, depth, size_px) = (forward_target, target.depth, view.size_px);
             let into = DeferredTarget { format, samples, visibility, depth, covered, radiance, size_px, coverage };
             let (Some(geometry), None) = (&scene.pulled, target.pixel) else { return Err(RenderError::NotDeferrable) };
             let (plan, kept) = ((&state.plan, view), &mut state.deferred);
             let pass = self.deferred.prepare(device, &self.sources, (scene, geometry), plan, &into, kept)?;
             pass.encode(encoder, scene, &frame_group, &into, |pass| {
                 if let Some(panorama) = &panorama {
-                    panorama.draw(pass, true);
+                    panorama.draw(pass);
                 }
             });
             RenderPath::Deferred
@@ -286,10 +294,10 @@ impl Renderer {
             if let Some(pixel) = target.pixel {
                 pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
             }
-            let pipelines = self.forward.of_plan(&state.plan, forward_target);
+            let pipelines: Vec<_> = self.forward.of_plan(&state.plan, forward_target).collect();
             draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.opaque);
             if let Some(panorama) = &panorama {
-                panorama.draw(&mut pass, false);
+                panorama.draw(&mut pass);
             }
             draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.blended);
             RenderPath::Forward
@@ -298,22 +306,42 @@ impl Renderer {
         Ok(FrameStats { path, ..frame_stats(scene, state) })
     }
 
+    /// Group 0 of the frame.
+    fn frame_group(
+        &self,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        scene: &mut GpuScene,
+        (view, visible): (&View, wgpu::Buffer),
+        uniform: &FrameUniform,
+        state: &mut FrameState,
+    ) -> wgpu::BindGroup {
+        let origin_in_world = scene.drawables.origin_in_world;
+        let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
+        state.frame.group(
+            (device, queue),
+            "frame",
+            bytemuck::bytes_of(uniform),
+            (scene.instances.clone(), visible, clusters.as_ref().map(|clusters| clusters.table.clone())),
+            |frame, (_, visible, _)| scene.frame_group(device, &self.shared, (frame, visible), clusters.as_ref()),
+        )
+    }
+
     /// The panorama of the frame, where it has one.
     fn panorama(
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         scene: &mut GpuScene,
         view: &View,
-        target: &RadianceTarget<'_>,
+        (target, under): (ForwardTarget, bool),
         state: &mut FrameState,
     ) -> Result<Option<BackgroundPass>, RenderError> {
         let (Some(environment), true) = (&mut scene.environment, state.plan.panorama) else { return Ok(None) };
         let panorama = environment.panorama(device, queue)?;
         let radiance_scale = environment.intensity * panorama.scale;
-        let uniform = background_uniform(&view.camera, view, environment.environment_from_world, radiance_scale);
-        let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
-        let samples = if under { 1 } else { target.samples };
-        let into = BackgroundTarget { format: target.format, samples, under };
+        let uniform = background_uniform(view, environment.environment_from_world, radiance_scale);
+        let ForwardTarget { format, samples, depth, light } = target;
+        let samples = if under { 1 } else { samples };
+        let into = BackgroundTarget { format, samples, depth, light, under };
         let uniform = (&uniform, &mut state.background);
         Ok(Some(self.background.prepare((device, queue), &self.sources, into, &panorama, uniform)?))
     }
@@ -339,7 +367,7 @@ impl Renderer {
 
     /// Name and text of every WGSL module in use, sorted by name.
     pub fn wgsl_sources(&self) -> Vec<(String, String)> {
-        let background = self.background.source().map(|text| ("background".to_owned(), text));
+        let background = self.background.sources().map(|text| ("background".to_owned(), text));
         let all = self.forward.sources().chain(self.deferred.sources()).chain(self.display.sources()).chain(background);
         let mut sources: Vec<_> = all.map(|(name, text)| (name, text.to_owned())).collect();
         sources.sort();
@@ -374,66 +402,6 @@ pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> Sha
         taps: table(&taps::TABLE).upload(device, queue),
         clamp_sampler,
     }
-}
-
-fn frame_uniform(scene: &GpuScene, view: &View) -> FrameUniform {
-    let origin_in_world = scene.drawables.origin_in_world;
-    let viewer: DVec4 = match view.camera.projection {
-        Projection::Perspective { .. } => (view.camera.position_in_world() - origin_in_world).extend(1.0),
-        Projection::Orthographic { .. } => (-view.camera.forward_in_world()).extend(0.0),
-    };
-    let lights = scene.lights.as_ref();
-    let channel = view.channel.map(|channel| match (channel, lights) {
-        // Lights are numbered as the scene has them.
-        (Channel::Radiance { source: LightSource::Light(light), components }, Some(lights)) => {
-            Channel::Radiance { source: LightSource::Light(lights.place(light)), components }
-        }
-        (other, _) => other,
-    });
-    let [channel, channel_index, channel_components] = channel.map_or([0; 3], channel_uniform);
-    FrameUniform {
-        clip_from_world: clip_from_origin(view, origin_in_world).to_cols_array_2d(),
-        viewer: viewer.as_vec4().to_array(),
-        light_count: lights.map_or(0, |lights| lights.lit),
-        channel,
-        channel_index,
-        channel_components,
-    }
-}
-
-/// The ray direction is affine in the picture plane, so three corners of it give the whole map.
-fn background_uniform(
-    camera: &Camera,
-    view: &View,
-    environment_from_world: DMat3,
-    radiance_scale: f32,
-) -> BackgroundUniform {
-    let size = view.size_px.as_dvec2();
-    let direction = |ndc: DVec2| {
-        let pixel = DVec2::new((ndc.x + 1.0) * 0.5, (1.0 - ndc.y) * 0.5) * size;
-        let along: DVec3 = camera.ray(pixel, view.size_px).1;
-        environment_from_world * (along / along.dot(camera.forward_in_world()))
-    };
-    let center = direction(DVec2::ZERO);
-    let direction_from_ndc = DMat3::from_cols(direction(DVec2::X) - center, direction(DVec2::Y) - center, center);
-    BackgroundUniform {
-        direction_from_ndc: [direction_from_ndc.x_axis, direction_from_ndc.y_axis, direction_from_ndc.z_axis]
-            .map(|column| column.extend(0.0).as_vec4().to_array()),
-        radiance_scale,
-        ..Default::default()
-    }
-}
-
-fn display_uniform(view: &View) -> DisplayUniform {
-    let background = match view.background {
-        Background::Color(color) => {
-            let linear = color.to_array().map(|channel| linear_from_srgb(f64::from(channel)) as f32);
-            [linear[0], linear[1], linear[2], 1.0]
-        }
-        Background::Environment | Background::Transparent => [0.0; 4],
-    };
-    let exposure = if view.tone_map == ToneMap::None { 1.0 } else { view.exposure_ev.exp2() };
-    DisplayUniform { background, exposure, ..Default::default() }
 }
 
 fn begin_forward<'encoder>(

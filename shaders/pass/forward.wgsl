@@ -3,6 +3,7 @@
 #import <interface>
 #import "math/vectors.wgsl"
 #import <output>
+#import <target>
 
 @vertex
 fn vertex(in: VertexIn) -> VertexOut {
@@ -11,5 +12,5 @@ fn vertex(in: VertexIn) -> VertexOut {
 
 @fragment
 fn fragment(v: VertexOut, @builtin(front_facing) front_facing: bool) -> @location(0) vec4f {
-    return output(v, front_facing);
+    return target_value(output(v, front_facing));
 }

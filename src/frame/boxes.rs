@@ -21,12 +21,19 @@ pub struct Boxes {
 impl Boxes {
     /// Adds the box of a primitive with bounds `object`, placed by `origin_from_object`.
     pub fn push(&mut self, object: &Bounds, origin_from_object: &DMat4) {
-        let (center, half) = placed(object, origin_from_object);
-        let fits = center.is_finite() && half.is_finite() && (center.abs() + half).max_element() < f64::from(f32::MAX);
-        let (center, half) = if fits { (center.as_vec3(), half.as_vec3()) } else { (Vec3::ZERO, Vec3::INFINITY) };
+        let (center, half) = held(object, origin_from_object);
         for axis in 0..3 {
             self.center[axis].push(center[axis]);
             self.half[axis].push(half[axis]);
+        }
+    }
+
+    /// Replaces a box by that of the primitive at another place.
+    pub(super) fn set(&mut self, index: usize, object: &Bounds, origin_from_object: &DMat4) {
+        let (center, half) = held(object, origin_from_object);
+        for axis in 0..3 {
+            self.center[axis][index] = center[axis];
+            self.half[axis][index] = half[axis];
         }
     }
 
@@ -59,6 +66,13 @@ impl Boxes {
         let center = 0.5 * min + 0.5 * max;
         if center.is_finite() { (center, (max - center).max(center - min)) } else { (Vec3::ZERO, Vec3::INFINITY) }
     }
+}
+
+/// Centre and half extent of a placed box in f32, infinite where that cannot hold it.
+fn held(object: &Bounds, origin_from_object: &DMat4) -> (Vec3, Vec3) {
+    let (center, half) = placed(object, origin_from_object);
+    let fits = center.is_finite() && half.is_finite() && (center.abs() + half).max_element() < f64::from(f32::MAX);
+    if fits { (center.as_vec3(), half.as_vec3()) } else { (Vec3::ZERO, Vec3::INFINITY) }
 }
 
 /// Centre and half extent of a placed box, the latter with room for all rounding on the way to a vertex's place.

@@ -25,6 +25,8 @@ pub struct Drawable {
     pub vertex_features: VertexFeatures,
     pub topology: Topology,
     pub mirrored: bool,
+    /// Around the vertices, in object space.
+    pub object: Bounds,
     /// Range in [`Drawables::placements`].
     pub placements: Range<usize>,
     /// Centre and half extent of the box around all placements, around the scene's origin.
@@ -82,6 +84,40 @@ impl Drawables {
         self.draws.iter().find(|drawable| (drawable.mesh, drawable.primitive) == first)
     }
 
+    /// Moves every instance to its place in `moved`, which are those of the scene in its order. Returns the range of
+    /// instances that are elsewhere now; `None`, and nothing has changed, where they are not the same meshes of the same
+    /// handedness, so that other draws are needed.
+    pub fn move_instances(&mut self, moved: &[Instance]) -> Option<Range<usize>> {
+        let is_alike = |(placed, &instance): (&PlacedInstance, &Instance)| {
+            (placed.instance.mesh, placed.mirrored) == (instance.mesh, is_mirrored(&instance))
+        };
+        if self.instances.len() != moved.len() || !self.instances.iter().zip(moved).all(is_alike) {
+            return None;
+        }
+        let has_moved = |index: &usize| self.instances[*index].instance != moved[*index];
+        let Some(first) = (0..moved.len()).find(has_moved) else { return Some(0..0) };
+        let last = (first..moved.len()).rfind(has_moved).unwrap_or(first);
+        for (placed, instance) in self.instances[first..=last].iter_mut().zip(&moved[first..=last]) {
+            placed.instance = *instance;
+        }
+        let origin_from_world = DMat4::from_translation(-self.origin_in_world);
+        let Placements { instances, boxes } = &mut self.placements;
+        for drawable in &mut self.draws {
+            let mut any = false;
+            for placement in drawable.placements.clone() {
+                let instance = instances[placement] as usize;
+                if (first..=last).contains(&instance) {
+                    boxes.set(placement, &drawable.object, &(origin_from_world * moved[instance].world_from_object));
+                    any = true;
+                }
+            }
+            if any {
+                drawable.bounds = boxes.union(drawable.placements.clone());
+            }
+        }
+        Some(first..last + 1)
+    }
+
     /// Adds one drawable for all of `same`.
     fn add(&mut self, scene: &Scene, features: SceneFeatures, same: &[Use]) {
         let (mesh, index) = same[0].place;
@@ -104,6 +140,7 @@ impl Drawables {
             vertex_features: VertexFeatures::of(&material_features, primitive),
             topology: primitive.topology,
             mirrored: same[0].mirrored,
+            object,
             bounds: self.placements.boxes.union(placements.clone()),
             placements,
         });
@@ -118,7 +155,11 @@ impl Drawable {
 }
 
 fn place(instance: Instance) -> PlacedInstance {
-    PlacedInstance { instance, mirrored: instance.world_from_object.determinant() < 0.0 }
+    PlacedInstance { instance, mirrored: is_mirrored(&instance) }
+}
+
+fn is_mirrored(instance: &Instance) -> bool {
+    instance.world_from_object.determinant() < 0.0
 }
 
 /// Every primitive at every instance that has something to draw, those that are drawn together side by side.

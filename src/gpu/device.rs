@@ -59,6 +59,17 @@ pub fn usable_features(precision: Precision) -> wgpu::Features {
     float_target | timestamps | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM | wgpu::Features::PRIMITIVE_INDEX
 }
 
+/// What a device is asked for: the limits that every WebGPU device has, but textures and buffers as large as the adapter
+/// can.
+pub fn usable_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+        max_buffer_size: adapter.max_buffer_size,
+        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
+        ..wgpu::Limits::default().or_worse_values_from(adapter)
+    }
+}
+
 impl Gpu {
     /// Opens the best adapter that matches: hardware before software, a native API before GL.
     pub fn open(request: &GpuRequest, options: GpuOptions) -> Result<Self, GpuError> {
@@ -95,17 +106,10 @@ impl Gpu {
         options: GpuOptions,
     ) -> Result<Self, GpuError> {
         let info = adapter.get_info();
-        let adapter_limits = adapter.limits();
-        let limits = wgpu::Limits {
-            max_texture_dimension_2d: adapter_limits.max_texture_dimension_2d,
-            max_buffer_size: adapter_limits.max_buffer_size,
-            max_storage_buffer_binding_size: adapter_limits.max_storage_buffer_binding_size,
-            ..wgpu::Limits::default().or_worse_values_from(&adapter_limits)
-        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("specula"),
             required_features: adapter.features() & usable_features(options.precision),
-            required_limits: limits,
+            required_limits: usable_limits(&adapter.limits()),
             memory_hints: memory_hints(info.device_type),
             ..Default::default()
         };

@@ -1,6 +1,18 @@
 //! What a pass binds, kept from frame to frame.
 
+use std::sync::Arc;
 use wgpu::util::DeviceExt;
+
+/// Tells a thing from all others, for as long as somebody remembers it. Handles of wgpu do not: those of two instances may
+/// be equal, so that what is kept of a lost device is mistaken for something of the next.
+#[derive(Debug, Clone, Default)]
+pub struct Identity(Arc<()>);
+
+impl PartialEq for Identity {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
 
 /// A uniform buffer in a bind group: both are made when first asked for, or when the group has to bind something else,
 /// and otherwise the buffer alone is written, if its contents are others.
@@ -52,6 +64,11 @@ impl<K: PartialEq> KeptUniform<K> {
         let group = kept.group.clone();
         self.kept = Some(kept);
         group
+    }
+
+    /// Lets go of buffer and group.
+    pub fn forget(&mut self) {
+        self.kept = None;
     }
 
     /// Buffers and bind groups made so far.

@@ -8,7 +8,7 @@ pub mod pipeline;
 mod readback;
 mod staging;
 
-pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, adapters, usable_features};
-pub use kept::KeptUniform;
+pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, adapters, usable_features, usable_limits};
+pub use kept::{Identity, KeptUniform};
 pub use readback::{Readback, read_buffer, read_texel, read_texture};
 pub use staging::Staging;

@@ -2,12 +2,31 @@
 
 use super::formats;
 
-/// Depth test against the reversed buffer: nearer or equal passes.
-pub fn depth_state(write: bool) -> wgpu::DepthStencilState {
+/// The depth buffer of a pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct DepthTarget {
+    pub format: wgpu::TextureFormat,
+    /// Whether what is nearer has the greater depth: 1 at the near plane.
+    pub reversed: bool,
+}
+
+impl DepthTarget {
+    /// That of our own passes.
+    pub const OWN: Self = Self { format: formats::DEPTH, reversed: true };
+
+    /// The depth of what is farthest: what a buffer is cleared to.
+    pub fn farthest(self) -> f32 {
+        if self.reversed { 0.0 } else { 1.0 }
+    }
+}
+
+/// Depth test: nearer or equal passes. Stencils are left as they are.
+pub fn depth_state(target: DepthTarget, write: bool) -> wgpu::DepthStencilState {
+    let nearer = if target.reversed { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual };
     wgpu::DepthStencilState {
-        format: formats::DEPTH,
+        format: target.format,
         depth_write_enabled: Some(write),
-        depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+        depth_compare: Some(nearer),
         stencil: Default::default(),
         bias: Default::default(),
     }
@@ -29,7 +48,7 @@ pub enum FullscreenDepth {
     /// The pass has none.
     None,
     /// Drawn where nothing is nearer.
-    Behind,
+    Behind(DepthTarget),
     /// Drawn where the depth is the triangle's own.
     Equal,
     /// The fragment shader's depth is stored.
@@ -38,11 +57,11 @@ pub enum FullscreenDepth {
 
 impl FullscreenDepth {
     fn state(self) -> Option<wgpu::DepthStencilState> {
-        let compared =
-            |depth_compare| wgpu::DepthStencilState { depth_compare: Some(depth_compare), ..depth_state(false) };
+        let own = depth_state(DepthTarget::OWN, false);
+        let compared = |depth_compare| wgpu::DepthStencilState { depth_compare: Some(depth_compare), ..own.clone() };
         match self {
             Self::None => None,
-            Self::Behind => Some(depth_state(false)),
+            Self::Behind(target) => Some(depth_state(target, false)),
             Self::Equal => Some(compared(wgpu::CompareFunction::Equal)),
             Self::Written => {
                 let always = compared(wgpu::CompareFunction::Always);

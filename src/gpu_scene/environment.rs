@@ -51,35 +51,35 @@ impl GpuEnvironment {
                 (atlas, scale, None)
             }
         };
-        let environment_from_world = DMat3::from_rotation_y(-environment.rotation_rad);
-        let intensity = environment.intensity;
-        let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
-        let [mirror_side, finest_side] = tile_sides(maps)?;
-        let (suns, sun_illuminance) = suns(maps, environment);
-        let uniform = EnvironmentUniform {
-            sun_count: maps.suns.len().min(MAX_SUNS) as u32,
-            suns,
-            sun_illuminance,
-            irradiance_over_pi: maps.irradiance_over_pi.map(|c| (c * intensity).as_vec3().extend(0.0).to_array()),
-            atlas: [1.0 / width, 1.0 / height, mirror_side as f32, finest_side as f32],
-            environment_from_world: columns(environment_from_world),
-            radiance_scale: scale * intensity as f32,
-            ..Default::default()
-        };
+        let sides = tile_sides(maps)?;
+        let contents = uniform(environment, maps, scale, sides);
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("environment"),
-            contents: bytemuck::bytes_of(&uniform),
-            usage: wgpu::BufferUsages::UNIFORM,
+            contents: bytemuck::bytes_of(&contents),
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         });
         Ok(Self {
             atlas,
             atlas_scale: scale,
             uniform,
-            environment_from_world,
-            intensity: intensity as f32,
+            environment_from_world: environment_from_world(environment),
+            intensity: environment.intensity as f32,
             image: Arc::clone(&environment.image),
             panorama,
         })
+    }
+
+    /// Turns and dims the environment as it is now. Returns false, and nothing has changed, where it is of another image.
+    pub(super) fn replace(&mut self, queue: &wgpu::Queue, environment: &Environment, maps: &EnvironmentMaps) -> bool {
+        let size = self.atlas.texture().size();
+        let is_same = Arc::ptr_eq(&self.image, &environment.image)
+            && (size.width, size.height) == (maps.atlas_width, maps.atlas_height);
+        let (true, Ok(sides)) = (is_same, tile_sides(maps)) else { return false };
+        let contents = uniform(environment, maps, self.atlas_scale, sides);
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&contents));
+        self.environment_from_world = environment_from_world(environment);
+        self.intensity = environment.intensity as f32;
+        true
     }
 
     pub(crate) fn bytes(&self) -> u64 {
@@ -97,6 +97,31 @@ impl GpuEnvironment {
         let panorama = Panorama { view, scale };
         self.panorama = Some(panorama.clone());
         Ok(panorama)
+    }
+}
+
+fn environment_from_world(environment: &Environment) -> DMat3 {
+    DMat3::from_rotation_y(-environment.rotation_rad)
+}
+
+fn uniform(
+    environment: &Environment,
+    maps: &EnvironmentMaps,
+    atlas_scale: f32,
+    [mirror_side, finest_side]: [u32; 2],
+) -> EnvironmentUniform {
+    let intensity = environment.intensity;
+    let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
+    let (suns, sun_illuminance) = suns(maps, environment);
+    EnvironmentUniform {
+        sun_count: maps.suns.len().min(MAX_SUNS) as u32,
+        suns,
+        sun_illuminance,
+        irradiance_over_pi: maps.irradiance_over_pi.map(|c| (c * intensity).as_vec3().extend(0.0).to_array()),
+        atlas: [1.0 / width, 1.0 / height, mirror_side as f32, finest_side as f32],
+        environment_from_world: columns(environment_from_world(environment)),
+        radiance_scale: atlas_scale * intensity as f32,
+        ..Default::default()
     }
 }
 

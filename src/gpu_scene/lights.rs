@@ -11,16 +11,22 @@ use wgpu::util::DeviceExt;
 #[derive(Debug)]
 pub(crate) struct GpuLights {
     pub(super) buffer: wgpu::Buffer,
+    sorted: Sorted,
+    list: LightList,
+    last: Option<GpuClusters>,
+}
+
+/// Which lights are where in the buffer.
+#[derive(Debug)]
+struct Sorted {
     /// How many of them shine; dark ones come last.
-    pub(crate) lit: u32,
+    lit: u32,
     /// How many of those reach everything; they come first.
     unbounded: u32,
     /// Of the lights in between.
     reaches: Vec<Reach>,
     /// Place in the buffer of each light, in the order of [`crate::scene::Scene::lights_in_world`].
     places: Vec<u32>,
-    list: LightList,
-    last: Option<GpuClusters>,
 }
 
 /// The clusters of one view.
@@ -32,13 +38,8 @@ pub(crate) struct GpuClusters {
     pub(crate) table: wgpu::Buffer,
 }
 
-impl GpuLights {
-    pub(super) fn new(
-        device: &wgpu::Device,
-        lights: &[LightInWorld],
-        origin_in_world: DVec3,
-        list: LightList,
-    ) -> Result<Self, UploadError> {
+impl Sorted {
+    fn new(lights: &[LightInWorld], origin_in_world: DVec3, list: LightList) -> (Self, Vec<types::Light>) {
         let reach = |light: &LightInWorld| Reach::new(light, origin_in_world);
         let is_dark = |light: &LightInWorld| light.intensity == DVec3::ZERO;
         let mut order: Vec<usize> = (0..lights.len()).collect();
@@ -50,33 +51,56 @@ impl GpuLights {
         let lit: Vec<usize> = order.iter().copied().filter(|&i| !is_dark(&lights[i])).collect();
         let reaches: Vec<Reach> = lit.iter().filter_map(|&i| reach(&lights[i])).collect();
         let mut data: Vec<types::Light> = order.iter().map(|&i| gpu_light(&lights[i], origin_in_world)).collect();
+        if list == LightList::Few {
+            // The shader declares an array of this length.
+            data.resize(FEW_LIGHTS, types::Light::default());
+        }
+        let unbounded = (lit.len() - reaches.len()) as u32;
+        (Self { lit: lit.len() as u32, unbounded, reaches, places }, data)
+    }
+}
+
+impl GpuLights {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        lights: &[LightInWorld],
+        origin_in_world: DVec3,
+        list: LightList,
+    ) -> Result<Self, UploadError> {
+        let (sorted, data) = Sorted::new(lights, origin_in_world, list);
         let (needed, limits) = (size_of_val(&data[..]) as u64, device.limits());
         let allowed = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         if needed > allowed {
             return Err(UploadError::TooLarge { what: "the array of lights", needed, allowed });
         }
         let usage = match list {
-            LightList::Few => {
-                // The shader declares an array of this length.
-                data.resize(FEW_LIGHTS, types::Light::default());
-                wgpu::BufferUsages::UNIFORM
-            }
+            LightList::Few => wgpu::BufferUsages::UNIFORM,
             _ => wgpu::BufferUsages::STORAGE,
         };
-        Ok(Self {
-            buffer: buffer(device, "lights", bytemuck::cast_slice(&data), usage),
-            lit: lit.len() as u32,
-            unbounded: (lit.len() - reaches.len()) as u32,
-            reaches,
-            places,
-            list,
-            last: None,
-        })
+        let buffer = buffer(device, "lights", bytemuck::cast_slice(&data), usage | wgpu::BufferUsages::COPY_DST);
+        Ok(Self { buffer, sorted, list, last: None })
+    }
+
+    /// Replaces the lights by others that are found in the same way. Returns false, and nothing has changed, where they need
+    /// more room or less.
+    pub(super) fn replace(&mut self, queue: &wgpu::Queue, lights: &[LightInWorld], origin_in_world: DVec3) -> bool {
+        let (sorted, data) = Sorted::new(lights, origin_in_world, self.list);
+        if size_of_val(&data[..]) as u64 != self.buffer.size() {
+            return false;
+        }
+        queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&data));
+        (self.sorted, self.last) = (sorted, None);
+        true
+    }
+
+    /// How many lights shine; dark ones come last.
+    pub(crate) fn lit(&self) -> u32 {
+        self.sorted.lit
     }
 
     /// The place in the buffer of a light of the scene.
     pub(crate) fn place(&self, light: u32) -> u32 {
-        self.places.get(light as usize).copied().unwrap_or(light)
+        self.sorted.places.get(light as usize).copied().unwrap_or(light)
     }
 
     /// The clusters of a view, where the lights are sorted into any; those of the last one while nothing moves.
@@ -95,7 +119,8 @@ impl GpuLights {
         if let Some(last) = self.last.as_ref().filter(is_same) {
             return Some(last.clone());
         }
-        let clusters = clusters(&self.reaches, self.unbounded, origin_in_world, &view.camera, view.size_px);
+        let clusters =
+            clusters(&self.sorted.reaches, self.sorted.unbounded, origin_in_world, &view.camera, view.size_px);
         let uniform = buffer(device, "clusters", bytemuck::bytes_of(&clusters.uniform), wgpu::BufferUsages::UNIFORM);
         let table = bytemuck::cast_slice(&clusters.table);
         let table = buffer(device, "lights of clusters", table, wgpu::BufferUsages::STORAGE);

@@ -19,8 +19,26 @@ use wgpu::util::DeviceExt;
 #[derive(Debug, Default)]
 pub(crate) struct Materials {
     /// Of each drawable.
-    pub(crate) groups: Vec<wgpu::BindGroup>,
+    pub(crate) groups: Vec<GpuMaterial>,
     pub(crate) layouts: HashMap<MaterialFeatures, wgpu::BindGroupLayout>,
+}
+
+/// What a draw binds of its material, and the buffers in it.
+#[derive(Debug, Clone)]
+pub(crate) struct GpuMaterial {
+    pub(crate) group: wgpu::BindGroup,
+    uniform: wgpu::Buffer,
+    disney: Option<wgpu::Buffer>,
+}
+
+impl GpuMaterial {
+    /// Writes the numbers of another material with the same features and textures.
+    pub(super) fn write(&self, queue: &wgpu::Queue, material: &Material) {
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform(material)));
+        if let (Some(buffer), Some(disney)) = (&self.disney, &material.disney) {
+            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&disney_uniform(disney)));
+        }
+    }
 }
 
 /// Uploads what the draws read, and what of their textures `cache` does not have.
@@ -33,7 +51,7 @@ pub(crate) fn upload(
     disney_table: &Table,
 ) -> Materials {
     let mut materials = Materials::default();
-    let mut bound: HashMap<(usize, MaterialFeatures), wgpu::BindGroup> = HashMap::new();
+    let mut bound: HashMap<(usize, MaterialFeatures), GpuMaterial> = HashMap::new();
     let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
     let disney_table = reads_table.then(|| disney_table.upload(device, queue));
     for drawable in &drawables.draws {
@@ -54,7 +72,7 @@ fn bind(
     (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
     (index, features): (usize, MaterialFeatures),
-) -> wgpu::BindGroup {
+) -> GpuMaterial {
     let material = &scene.materials[index];
     let name = material.name.as_deref().unwrap_or("material");
     let uniform = uniform_buffer(device, name, bytemuck::bytes_of(&uniform(material)));
@@ -83,11 +101,12 @@ fn bind(
         entries.push(entry(disney_binding(&features) + 1, wgpu::BindingResource::TextureView(table)));
     }
     let label = material.name.as_deref();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
+    let group = device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries });
+    GpuMaterial { group, uniform, disney }
 }
 
 fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::UNIFORM;
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
     device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
 }
 

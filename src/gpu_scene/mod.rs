@@ -1,5 +1,6 @@
 //! A [`Scene`] on the GPU: buffers, textures and bind groups, made once.
 
+mod edit;
 mod environment;
 mod geometry;
 mod lights;
@@ -11,8 +12,8 @@ mod tables;
 mod textures;
 
 use crate::frame::{Drawables, PlacedInstance, is_deferrable};
-use crate::gpu::Staging;
 use crate::gpu::bindings::{self, frame_layout};
+use crate::gpu::{Identity, Staging};
 use crate::scene::{EnvironmentMaps, Scene};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
@@ -24,6 +25,7 @@ pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
 pub(crate) use lights::GpuClusters;
 use lights::GpuLights;
+use materials::GpuMaterial;
 pub use pulled::PulledGeometry;
 pub use tables::Table;
 use textures::TextureCache;
@@ -54,11 +56,11 @@ pub struct UploadedBytes {
 #[derive(Debug)]
 pub(crate) struct GpuDraw {
     pub(crate) primitive: GpuPrimitive,
-    pub(crate) material: wgpu::BindGroup,
+    pub(crate) material: GpuMaterial,
 }
 
 impl GpuDraw {
-    fn new((primitive, material): (GpuPrimitive, wgpu::BindGroup)) -> Self {
+    fn new((primitive, material): (GpuPrimitive, GpuMaterial)) -> Self {
         Self { primitive, material }
     }
 }
@@ -83,6 +85,9 @@ pub struct GpuScene {
     pub(crate) environment: Option<GpuEnvironment>,
     textures: TextureCache,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
+    pub(crate) identity: Identity,
+    /// Counts the edits since the upload.
+    pub(crate) revision: u64,
 }
 
 /// The device-lifetime resources that a scene's bind groups point at.
@@ -157,7 +162,7 @@ impl GpuScene {
         let storage = |label, contents: &[u8]| {
             // An empty binding is not allowed; nothing reads the padding.
             let contents = if contents.is_empty() { &[0; 128] } else { contents };
-            let usage = wgpu::BufferUsages::STORAGE;
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         Ok(Self {
@@ -179,6 +184,8 @@ impl GpuScene {
             pulled: None,
             environment,
             frame_layout: frame_layout(device, features),
+            identity: Identity::default(),
+            revision: 0,
         })
     }
 

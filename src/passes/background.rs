@@ -2,17 +2,20 @@
 
 use crate::gpu::KeptUniform;
 use crate::gpu::bindings::background_layout;
-use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
 use crate::gpu_scene::{Panorama, entry};
 use crate::shader::types::BackgroundUniform;
-use crate::shader::{Composed, ShaderError, ShaderSources, background_module, create_module};
+use crate::shader::{Composed, ShaderError, ShaderSources, TargetLight, background_module_into, create_module};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// What the panorama is drawn into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BackgroundTarget {
     pub format: wgpu::TextureFormat,
     pub samples: u32,
+    pub depth: DepthTarget,
+    pub light: TargetLight,
     /// Under what is there, by its coverage, and where the depth is the triangle's own; else behind what is nearer.
     pub under: bool,
 }
@@ -22,7 +25,7 @@ pub struct BackgroundTarget {
 pub struct BackgroundPipeline {
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    module: Option<(Composed, wgpu::ShaderModule)>,
+    modules: HashMap<TargetLight, (Composed, wgpu::ShaderModule)>,
     pipelines: HashMap<BackgroundTarget, wgpu::RenderPipeline>,
 }
 
@@ -31,6 +34,7 @@ pub struct BackgroundPipeline {
 pub struct BackgroundPass {
     group: wgpu::BindGroup,
     pipeline: wgpu::RenderPipeline,
+    instances: Range<u32>,
 }
 
 impl BackgroundPipeline {
@@ -42,12 +46,12 @@ impl BackgroundPipeline {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Self { layout: background_layout(device), sampler, module: None, pipelines: HashMap::new() }
+        Self { layout: background_layout(device), sampler, modules: HashMap::new(), pipelines: HashMap::new() }
     }
 
-    /// Text of the module, once it was used.
-    pub fn source(&self) -> Option<&str> {
-        self.module.as_ref().map(|(composed, _)| composed.text.as_str())
+    /// Texts of the modules that were used.
+    pub fn sources(&self) -> impl Iterator<Item = &str> {
+        self.modules.values().map(|(composed, _)| composed.text.as_str())
     }
 
     pub fn prepare(
@@ -72,7 +76,13 @@ impl BackgroundPipeline {
         };
         let contents = bytemuck::bytes_of(uniform);
         let group = kept.group((device, queue), "background", contents, panorama.view.clone(), bind);
-        Ok(BackgroundPass { group, pipeline })
+        let instances = match (target.under, target.depth.reversed) {
+            (true, _) => 0..2,
+            (false, true) => 0..1,
+            // At depth 1.
+            (false, false) => 1..2,
+        };
+        Ok(BackgroundPass { group, pipeline, instances })
     }
 
     fn pipeline(
@@ -84,12 +94,13 @@ impl BackgroundPipeline {
         if let Some(pipeline) = self.pipelines.get(&target) {
             return Ok(pipeline.clone());
         }
-        let module = match &self.module {
+        let module = match self.modules.get(&target.light) {
             Some((_, module)) => module.clone(),
             None => {
-                let composed = background_module(sources)?;
+                let composed = background_module_into(sources, target.light)?;
                 let module = create_module(device, "background", &composed)?;
-                self.module.insert((composed, module)).1.clone()
+                self.modules.insert(target.light, (composed, module.clone()));
+                module
             }
         };
         let component = wgpu::BlendComponent {
@@ -100,7 +111,7 @@ impl BackgroundPipeline {
         let into = FullscreenTarget {
             format: Some(target.format),
             samples: target.samples,
-            depth: if target.under { FullscreenDepth::Equal } else { FullscreenDepth::Behind },
+            depth: if target.under { FullscreenDepth::Equal } else { FullscreenDepth::Behind(target.depth) },
             blend: target.under.then_some(wgpu::BlendState { color: component, alpha: component }),
         };
         let pipeline = fullscreen_pipeline(device, "background", &[Some(&self.layout)], &module, into);
@@ -111,9 +122,9 @@ impl BackgroundPipeline {
 
 impl BackgroundPass {
     /// Where nothing is; with `under`, also where something covers a part of the pixel.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, under: bool) {
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
-        pass.draw(0..3, 0..if under { 2 } else { 1 });
+        pass.draw(0..3, self.instances.clone());
     }
 }

@@ -215,7 +215,7 @@ impl DeferredPass {
         pass.set_bind_group(0, frame_group, &[]);
         for prepared in &self.draws {
             pass.set_pipeline(&prepared.shade.0);
-            pass.set_bind_group(1, &scene.draws[prepared.draw.drawable].material, &[]);
+            pass.set_bind_group(1, &scene.draws[prepared.draw.drawable].material.group, &[]);
             pass.set_bind_group(2, &prepared.shade.1, &[]);
             let [corner, size] = prepared.rectangle;
             pass.set_scissor_rect(corner.x, corner.y, size.x, size.y);

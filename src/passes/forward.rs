@@ -1,11 +1,12 @@
 //! Surfaces: every draw with the shader of its features.
 
 use crate::frame::{Draw, FramePlan, PipelineKey};
-use crate::gpu::pipeline::{depth_state, primitive_state};
+use crate::gpu::pipeline::{DepthTarget, depth_state, primitive_state};
 use crate::gpu_scene::{GpuDraw, GpuScene};
 use crate::scene::Topology;
 use crate::shader::{
-    Alpha, Composed, ForwardFeatures, ShaderError, ShaderSources, attributes, create_module, forward_module,
+    Alpha, Composed, ForwardFeatures, ShaderError, ShaderSources, TargetLight, attributes, create_module,
+    forward_module_into,
 };
 use std::collections::HashMap;
 
@@ -14,16 +15,32 @@ use std::collections::HashMap;
 pub struct ForwardTarget {
     pub format: wgpu::TextureFormat,
     pub samples: u32,
+    pub depth: DepthTarget,
+    pub light: TargetLight,
+}
+
+impl ForwardTarget {
+    /// A target of radiance with the depth of our own passes.
+    pub fn radiance(format: wgpu::TextureFormat, samples: u32) -> Self {
+        Self { format, samples, depth: DepthTarget::OWN, light: TargetLight::Radiance }
+    }
 }
 
 /// Forward pipelines by what they draw and into what.
 #[derive(Debug, Default)]
 pub struct ForwardPipelines {
-    modules: HashMap<ForwardFeatures, (Composed, wgpu::ShaderModule)>,
+    modules: HashMap<(ForwardFeatures, TargetLight), (Composed, wgpu::ShaderModule)>,
+    /// Of the host, for what the driver compiles.
+    cache: Option<wgpu::PipelineCache>,
     pipelines: HashMap<(PipelineKey, ForwardTarget), wgpu::RenderPipeline>,
 }
 
 impl ForwardPipelines {
+    /// With the host's memory of what its driver has compiled.
+    pub fn with_cache(cache: Option<wgpu::PipelineCache>) -> Self {
+        Self { cache, ..Default::default() }
+    }
+
     /// Makes the pipelines of `plan` that do not exist yet.
     pub fn prepare(
         &mut self,
@@ -37,8 +54,8 @@ impl ForwardPipelines {
             if self.pipelines.contains_key(&(*key, target)) {
                 continue;
             }
-            let module = self.module(device, sources, &key.features)?;
-            let pipeline = create_pipeline(device, &module, scene, key, target);
+            let module = self.module(device, sources, &key.features, target.light)?;
+            let pipeline = create_pipeline(device, &module, scene, key, (target, self.cache.as_ref()));
             self.pipelines.insert((*key, target), pipeline);
         }
         Ok(())
@@ -49,32 +66,46 @@ impl ForwardPipelines {
         device: &wgpu::Device,
         sources: &ShaderSources,
         features: &ForwardFeatures,
+        light: TargetLight,
     ) -> Result<wgpu::ShaderModule, ShaderError> {
-        let key = features.module_key();
+        let features = features.module_key();
+        let key = (features, light);
         if let Some((_, module)) = self.modules.get(&key) {
             return Ok(module.clone());
         }
-        let composed = forward_module(sources, &key)?;
-        let module = create_module(device, &format!("forward/{key}"), &composed)?;
+        let composed = forward_module_into(sources, &features, light)?;
+        let module = create_module(device, &format!("forward/{features}"), &composed)?;
         self.modules.insert(key, (composed, module.clone()));
         Ok(module)
     }
 
     /// Name and text of every module made so far.
     pub fn sources(&self) -> impl Iterator<Item = (String, &str)> {
-        self.modules.iter().map(|(features, (composed, _))| (format!("forward+{features}"), composed.text.as_str()))
+        let name = |features: &ForwardFeatures, light: &TargetLight| match light {
+            TargetLight::Radiance => format!("forward+{features}"),
+            TargetLight::Display(display) => {
+                format!("forward+{features}+display.{:?}", display.tone_map).to_lowercase()
+            }
+        };
+        self.modules
+            .iter()
+            .map(move |((features, light), (composed, _))| (name(features, light), composed.text.as_str()))
     }
 
     /// The pipelines of a prepared plan, in its order.
-    pub fn of_plan(&self, plan: &FramePlan, target: ForwardTarget) -> Vec<Option<&wgpu::RenderPipeline>> {
-        plan.pipelines.iter().map(|key| self.pipelines.get(&(*key, target))).collect()
+    pub fn of_plan(
+        &self,
+        plan: &FramePlan,
+        target: ForwardTarget,
+    ) -> impl Iterator<Item = Option<wgpu::RenderPipeline>> {
+        plan.pipelines.iter().map(move |key| self.pipelines.get(&(*key, target)).cloned())
     }
 }
 
 /// Records `draws` of a plan with its pipelines. State that two draws in a row share is set once.
 pub fn draw(
     pass: &mut wgpu::RenderPass<'_>,
-    pipelines: &[Option<&wgpu::RenderPipeline>],
+    pipelines: &[Option<wgpu::RenderPipeline>],
     scene: &GpuScene,
     frame_group: &wgpu::BindGroup,
     draws: &[Draw],
@@ -87,12 +118,12 @@ pub fn draw(
     for draw in draws {
         let drawable = &scene.drawables.draws[draw.drawable];
         let GpuDraw { primitive, material } = &scene.draws[draw.drawable];
-        let Some(pipeline) = pipelines[draw.pipeline] else { continue };
+        let Some(pipeline) = &pipelines[draw.pipeline] else { continue };
         if bound_pipeline.replace(draw.pipeline) != Some(draw.pipeline) {
             pass.set_pipeline(pipeline);
         }
-        if bound_material.replace(material) != Some(material) {
-            pass.set_bind_group(1, material, &[]);
+        if bound_material.replace(&material.group) != Some(&material.group) {
+            pass.set_bind_group(1, &material.group, &[]);
         }
         let place = (drawable.mesh, drawable.primitive);
         if bound_primitive.replace(place) != Some(place) {
@@ -109,7 +140,7 @@ fn create_pipeline(
     module: &wgpu::ShaderModule,
     scene: &GpuScene,
     key: &PipelineKey,
-    target: ForwardTarget,
+    (target, cache): (ForwardTarget, Option<&wgpu::PipelineCache>),
 ) -> wgpu::RenderPipeline {
     let material_layout = scene.material_layouts.get(&key.features.material);
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -136,7 +167,7 @@ fn create_pipeline(
             buffers: &buffers,
         },
         primitive: primitive_state(topology(key), key.mirrored, key.cull_back),
-        depth_stencil: Some(depth_state(!blended)),
+        depth_stencil: Some(depth_state(target.depth, !blended)),
         multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,
@@ -149,7 +180,7 @@ fn create_pipeline(
             })],
         }),
         multiview_mask: None,
-        cache: None,
+        cache,
     })
 }
 

@@ -1,8 +1,9 @@
 //! What one picture keeps from frame to frame: its plan, its buffers, and what it shows.
 
 use super::RadianceTarget;
+use super::paint::Painting;
 use crate::frame::{Culling, FramePlan, PlanOptions, Planner};
-use crate::gpu::KeptUniform;
+use crate::gpu::{Identity, KeptUniform};
 use crate::gpu_scene::GpuScene;
 use crate::passes::DeferredGroups;
 use crate::scene::View;
@@ -20,14 +21,15 @@ pub struct FrameState {
     planner: Planner,
     pub(super) plan: FramePlan,
     pub(super) pipeline_names: Arc<[String]>,
-    /// The instances of the scene that the rest is about: they tell scenes apart.
-    scene: Option<wgpu::Buffer>,
+    /// The scene that the rest is about.
+    scene: Option<Identity>,
     visible: Option<VisibleList>,
     /// Beside the uniform: instances, which of them are visible, and clusters of lights.
     pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer, Option<wgpu::Buffer>)>,
     pub(super) background: KeptUniform<wgpu::TextureView>,
     pub(super) display: KeptUniform<wgpu::TextureView>,
     pub(super) deferred: Option<DeferredGroups>,
+    pub(super) painting: Option<Painting>,
     drawn: Option<Drawn>,
     /// The view that was displayed last, from which radiance and where.
     displayed: Option<(View, wgpu::TextureView, wgpu::TextureView)>,
@@ -45,7 +47,8 @@ struct VisibleList {
 /// All that a frame's radiance depends on.
 #[derive(Debug, PartialEq)]
 struct Drawn {
-    scene: wgpu::Buffer,
+    scene: Identity,
+    revision: u64,
     view: View,
     culling: Culling,
     surfaces: [Option<wgpu::TextureView>; 3],
@@ -80,10 +83,9 @@ impl FrameState {
         view: &View,
         options: PlanOptions,
     ) -> wgpu::Buffer {
-        if self.scene.as_ref() != Some(&scene.instances) {
-            self.planner = Planner::default();
-            self.visible = None;
-            self.scene = Some(scene.instances.clone());
+        if self.scene.as_ref() != Some(&scene.identity) {
+            self.let_go();
+            self.scene = Some(scene.identity.clone());
         }
         if self.planner.plan(&scene.drawables, scene.features, view, options, &mut self.plan) {
             self.pipeline_names = self.plan.pipelines.iter().map(|key| key.features.to_string()).collect();
@@ -96,9 +98,20 @@ impl FrameState {
         visible.buffer.clone()
     }
 
+    /// Lets go of all that is of a scene, or of its device.
+    fn let_go(&mut self) {
+        self.planner = Planner::default();
+        (self.visible, self.deferred, self.painting) = (None, None, None);
+        self.frame.forget();
+        self.background.forget();
+        self.display.forget();
+        self.forget();
+    }
+
     pub(super) fn was_drawn(&mut self, scene: &GpuScene, view: &View, culling: Culling, target: &RadianceTarget<'_>) {
         self.drawn = Some(Drawn {
-            scene: scene.instances.clone(),
+            scene: scene.identity.clone(),
+            revision: scene.revision,
             view: view.clone(),
             culling,
             surfaces: target.surfaces.views().map(Option::<&wgpu::TextureView>::cloned),
@@ -117,7 +130,8 @@ impl FrameState {
     pub(super) fn shows(&self, scene: &GpuScene, view: &View, culling: Culling, target: &RadianceTarget<'_>) -> bool {
         let RadianceTarget { format: _, samples, surfaces, depth, pixel } = *target;
         self.drawn.as_ref().is_some_and(|drawn| {
-            (&drawn.scene, &drawn.view, drawn.culling) == (&scene.instances, view, culling)
+            (&drawn.scene, drawn.revision) == (&scene.identity, scene.revision)
+                && (&drawn.view, drawn.culling) == (view, culling)
                 && (drawn.surfaces.each_ref().map(Option::as_ref), &drawn.depth) == (surfaces.views(), depth)
                 && (drawn.samples, drawn.pixel) == (samples, pixel)
         })

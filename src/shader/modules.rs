@@ -7,9 +7,44 @@ use super::sources::ShaderSources;
 use super::{channels, interface, pulled, types};
 use crate::scene::{Components, Geometry, Quality, Term, TextureSlot, ToneMap};
 
-/// The forward pass of one kind of draw.
+/// What a target holds where something is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum TargetLight {
+    /// Scene radiance in cd/m2, multiplied with coverage.
+    #[default]
+    Radiance,
+    /// Display light, multiplied with coverage.
+    Display(DisplayFeatures),
+}
+
+/// The forward pass of one kind of draw, into radiance.
 pub fn forward_module(sources: &ShaderSources, features: &ForwardFeatures) -> Result<Composed, ShaderError> {
-    compose(sources, "pass/forward.wgsl", &forward_slots(features))
+    forward_module_into(sources, features, TargetLight::Radiance)
+}
+
+/// The same into what a target holds.
+pub fn forward_module_into(
+    sources: &ShaderSources,
+    features: &ForwardFeatures,
+    light: TargetLight,
+) -> Result<Composed, ShaderError> {
+    let mut slots = forward_slots(features);
+    slots.extend(target_slots(light, "frame"));
+    compose(sources, "pass/forward.wgsl", &slots)
+}
+
+/// What turns radiance into what the target holds; `uniform` has the exposure.
+fn target_slots(light: TargetLight, uniform: &str) -> Slots {
+    match light {
+        TargetLight::Radiance => Slots::from([("target", Slot::File("color/target_radiance.wgsl"))]),
+        TargetLight::Display(features) => {
+            let exposure = format!("fn exposure() -> f32 {{\n    return {uniform}.exposure;\n}}\n");
+            let mut slots = display_slots(features);
+            slots.insert("target", Slot::File("color/target_display.wgsl"));
+            slots.insert("exposure", Slot::Text(exposure));
+            slots
+        }
+    }
 }
 
 /// The pass that shades what the visibility pass has seen of one kind of draw, by the shader that the forward pass has.
@@ -215,9 +250,16 @@ fn visibility_anisotropic(geometry: Geometry) -> &'static str {
     }
 }
 
-/// The panorama behind the scene.
+/// The panorama behind the scene, into radiance.
 pub fn background_module(sources: &ShaderSources) -> Result<Composed, ShaderError> {
-    compose(sources, "pass/background.wgsl", &Slots::from([("types", Slot::Text(types::wgsl()))]))
+    background_module_into(sources, TargetLight::Radiance)
+}
+
+/// The same into what a target holds.
+pub fn background_module_into(sources: &ShaderSources, light: TargetLight) -> Result<Composed, ShaderError> {
+    let mut slots = target_slots(light, "background");
+    slots.insert("types", Slot::Text(types::wgsl()));
+    compose(sources, "pass/background.wgsl", &slots)
 }
 
 /// Finished pictures to a window.
@@ -235,6 +277,12 @@ pub struct DisplayFeatures {
 
 /// Scene radiance to display values.
 pub fn display_module(sources: &ShaderSources, features: DisplayFeatures) -> Result<Composed, ShaderError> {
+    let mut slots = display_slots(features);
+    slots.insert("types", Slot::Text(types::wgsl()));
+    compose(sources, "pass/display.wgsl", &slots)
+}
+
+fn display_slots(features: DisplayFeatures) -> Slots {
     let tone_map = match features.tone_map {
         ToneMap::Neutral => "color/tone_map_neutral.wgsl",
         ToneMap::Aces => "color/tone_map_aces.wgsl",
@@ -243,10 +291,5 @@ pub fn display_module(sources: &ShaderSources, features: DisplayFeatures) -> Res
         ToneMap::Linear | ToneMap::None => "color/tone_map_linear.wgsl",
     };
     let encode = if features.encode_srgb { "color/encode_srgb.wgsl" } else { "color/encode_linear.wgsl" };
-    let slots = Slots::from([
-        ("types", Slot::Text(types::wgsl())),
-        ("tone_map", Slot::File(tone_map)),
-        ("encode", Slot::File(encode)),
-    ]);
-    compose(sources, "pass/display.wgsl", &slots)
+    Slots::from([("tone_map", Slot::File(tone_map)), ("encode", Slot::File(encode))])
 }

@@ -38,6 +38,8 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "color/encode_linear.wgsl",
     "color/encode_srgb.wgsl",
     "color/srgb.wgsl",
+    "color/target_display.wgsl",
+    "color/target_radiance.wgsl",
     "color/tone_map_aces.wgsl",
     "color/tone_map_agx.wgsl",
     "color/tone_map_linear.wgsl",

@@ -17,6 +17,11 @@ gpu_struct! {
         channel: u32,
         channel_index: u32,
         channel_components: u32,
+        /// Factor before the tone map, where the target holds display light.
+        exposure: f32,
+        pad_0: f32,
+        pad_1: f32,
+        pad_2: f32,
     }
 }
 
@@ -144,9 +149,10 @@ gpu_struct! {
         /// Direction in the panorama's frame from (ndc.x, ndc.y, 1); not normalised.
         direction_from_ndc: mat3x3f,
         radiance_scale: f32,
+        /// Factor before the tone map, where the target holds display light.
+        exposure: f32,
         pad_0: f32,
         pad_1: f32,
-        pad_2: f32,
     }
 }
 

@@ -5,8 +5,8 @@ mod tree;
 use crate::shaders::{display_features, forward_features, term_features};
 use specula::proof;
 use specula::shader::{
-    SOURCES, ShaderSources, background_module, covered_module, deferred_module, display_module, forward_module,
-    present_module, visibility_module,
+    SOURCES, ShaderSources, TargetLight, background_module_into, covered_module, deferred_module, display_module,
+    forward_module, present_module, visibility_module,
 };
 use std::collections::BTreeSet;
 use tree::{File, exists, files, names_after, read, words};
@@ -36,6 +36,8 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("passes", &["frame", "gpu", "gpu_scene", "math", "scene", "shader"]),
     ("renderer", &["bake", "frame", "gpu", "gpu_scene", "math", "passes", "scene", "shader"]),
     ("capture", &["frame", "gpu", "gpu_scene", "math", "passes", "renderer", "scene"]),
+    // Scenes of a host, edited while they are shown.
+    ("embed", &["gpu", "gpu_scene", "renderer", "scene"]),
     // What the shaders are held to: WGSL beside the truth, on a device.
     ("proof", &["bake", "gpu", "gpu_scene", "math", "progress", "reference", "renderer", "scene", "shader"]),
     // The program: everything.
@@ -73,6 +75,7 @@ const EVERYTHING: &[&str] = &[
     "cache",
     "capture",
     "cli",
+    "embed",
     "frame",
     "gpu",
     "gpu_scene",
@@ -196,10 +199,12 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     let is_apart = |path: &String| path.starts_with("naive/") || path.starts_with("proof/");
     assert!(of_proofs.iter().all(is_apart) && !embedded.iter().any(is_apart), "proofs have folders of their own");
 
-    let mut modules = vec![background_module(&sources).unwrap(), present_module(&sources).unwrap()];
+    let mut modules = vec![present_module(&sources).unwrap()];
     let forward = [forward_features(), term_features()].concat();
     modules.extend(forward.iter().map(|features| forward_module(&sources, features).unwrap()));
     modules.extend(display_features().into_iter().map(|features| display_module(&sources, features).unwrap()));
+    let lights = display_features().into_iter().map(TargetLight::Display).chain([TargetLight::Radiance]);
+    modules.extend(lights.map(|light| background_module_into(&sources, light).unwrap()));
     let deferred = forward.iter().step_by(50).map(|features| deferred_module(&sources, features, 4).unwrap());
     modules.extend(deferred.chain([covered_module(&sources, 4).unwrap(), visibility_module(&sources).unwrap()]));
     let used: BTreeSet<&str> = modules.iter().flat_map(|module| module.files()).collect();

@@ -10,6 +10,7 @@ mod cli;
 mod compare;
 mod culling;
 mod disney;
+mod embed;
 mod features;
 mod frames;
 mod golden_suites;

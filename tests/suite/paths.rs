@@ -164,7 +164,7 @@ fn the_deferred_path_is_taken_only_where_it_can_be_and_pays() {
     let scene = sphere_scene(Material::default());
     let renderer = Renderer::new(&gpu.device, &gpu.queue).with_paths(PathChoice::Faster);
     let uploaded = renderer.upload(&gpu.device, &gpu.queue, &scene, None).unwrap();
-    let into = ForwardTarget { format: Precision::Half.hdr_format(), samples: 1 };
+    let into = ForwardTarget::radiance(Precision::Half.hdr_format(), 1);
     assert_eq!(renderer.path(&uploaded, &front_view(128), into), RenderPath::Deferred);
     assert_eq!(renderer.path(&uploaded, &front_view(8192), into), RenderPath::Forward);
 }

@@ -12,8 +12,8 @@ use specula::scene::{
 };
 use specula::shader::{
     Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
-    VertexFeatures, background_module, covered_module, deferred_module, display_module, forward_module, present_module,
-    visibility_module,
+    TargetLight, VertexFeatures, background_module, background_module_into, covered_module, deferred_module,
+    display_module, forward_module, forward_module_into, present_module, visibility_module,
 };
 use std::collections::BTreeMap;
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
@@ -199,7 +199,23 @@ fn the_other_passes_use_all_that_is_bound_and_nothing_else() {
     assert_eq!(used(&background_module(&sources).unwrap()), offered(&[background_entries()]));
     assert_eq!(used(&present_module(&sources).unwrap()), offered(&[present_entries()]));
     for features in display_features() {
+        let background = background_module_into(&sources, TargetLight::Display(features)).unwrap();
+        assert_eq!(used(&background), offered(&[background_entries()]), "{features:?}");
         assert_eq!(used(&display_module(&sources, features).unwrap()), offered(&[display_entries()]), "{features:?}");
+    }
+}
+
+#[test]
+fn forward_modules_into_display_light_bind_what_those_into_radiance_bind() {
+    let sources = ShaderSources::default();
+    let lights = display_features().into_iter().map(TargetLight::Display);
+    for (features, light) in forward_features().iter().step_by(7).zip(lights.cycle()) {
+        let mut radiance = used(&forward_module(&sources, features).unwrap());
+        let display = used(&forward_module_into(&sources, features, light).unwrap());
+        // The exposure is in the frame's uniform.
+        let frame = radiance.get_mut(&(0, FRAME_UNIFORM)).unwrap();
+        frame.1 |= ShaderStages::FRAGMENT;
+        assert_eq!(display, radiance, "{features}");
     }
 }
 

@@ -6,7 +6,7 @@ use crate::capture::CaptureError;
 use crate::cli::clock::{Basis, Timestamps, median, time_frame};
 use crate::cli::error::CliError;
 use crate::gpu::bindings::background_layout;
-use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
 use crate::gpu::{Gpu, formats};
 use crate::gpu_scene::entry;
 use crate::renderer::RenderError;
@@ -66,7 +66,7 @@ impl<'a> Apparatus<'a> {
         let module = module.and_then(|composed| create_module(device, "probe", &composed));
         let module = module.map_err(|error| CaptureError::from(RenderError::from(error)))?;
         let format = fill.target.format();
-        let depth = if fill.depth { FullscreenDepth::Behind } else { FullscreenDepth::None };
+        let depth = if fill.depth { FullscreenDepth::Behind(DepthTarget::OWN) } else { FullscreenDepth::None };
         let into = FullscreenTarget { format: Some(format), samples: fill.samples, depth, blend: None };
         let seed = [1.0 / side as f32, 0.999, 0.001, 2.0];
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

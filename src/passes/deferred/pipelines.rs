@@ -3,7 +3,9 @@
 use crate::frame::PipelineKey;
 use crate::gpu::bindings::{covered_layout, pulled_layout, visibility_layout};
 use crate::gpu::formats;
-use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, depth_state, fullscreen_pipeline, primitive_state};
+use crate::gpu::pipeline::{
+    DepthTarget, FullscreenDepth, FullscreenTarget, depth_state, fullscreen_pipeline, primitive_state,
+};
 use crate::gpu_scene::GpuScene;
 use crate::shader::{
     Composed, ForwardFeatures, ShaderError, ShaderSources, covered_module, create_module, deferred_module,
@@ -115,7 +117,7 @@ impl DeferredPipelines {
                 })],
             },
             primitive: primitive_state(wgpu::PrimitiveTopology::TriangleList, key.mirrored, key.cull_back),
-            depth_stencil: Some(depth_state(true)),
+            depth_stencil: Some(depth_state(DepthTarget::OWN, true)),
             multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
                 module: &module,

@@ -1,0 +1,265 @@
+//! The scene itself: what is changed, and how little of it is uploaded.
+
+use super::merge::{self, Model};
+use super::slots::Slots;
+use super::{EmbedError, ModelId, check};
+use crate::gpu::Identity;
+use crate::gpu_scene::GpuScene;
+use crate::renderer::Renderer;
+use crate::scene::{Environment, EnvironmentMaps, Light, Material, Scene};
+use glam::DMat4;
+use std::hash::{BuildHasher, RandomState};
+use std::sync::Arc;
+
+/// Models, lights and an environment that a host changes while they are shown. All of it is also on the CPU, so that
+/// another device can be given the same scene.
+///
+/// Changes are collected, and [`Self::update`] brings them to the GPU: transforms, the numbers of materials and lights, and
+/// the environment's rotation and intensity are written into the buffers that are there. Models that come or go, and
+/// changes that need other shaders (a material that gets a texture or becomes transparent, a transform that begins to
+/// mirror, lights that are more or fewer than fit), upload the scene anew.
+#[derive(Debug)]
+pub struct LiveScene {
+    /// Told from others by chance: a handle of another scene is one in 2^64.
+    id: u64,
+    scene: Scene,
+    maps: Option<Arc<EnvironmentMaps>>,
+    models: Slots<Model>,
+    uploaded: Option<Uploaded>,
+    pending: Pending,
+    uploads: u64,
+}
+
+#[derive(Debug)]
+struct Uploaded {
+    /// Of the renderer that it was uploaded for.
+    renderer: Identity,
+    scene: GpuScene,
+}
+
+/// What has changed since the last update.
+#[derive(Debug, Default)]
+struct Pending {
+    all: bool,
+    moved: bool,
+    lights: bool,
+    environment: bool,
+    /// Materials by their place in the scene, and as they are to be.
+    materials: Vec<(usize, Material)>,
+}
+
+impl Default for LiveScene {
+    fn default() -> Self {
+        Self {
+            id: RandomState::new().hash_one(0),
+            scene: Scene::default(),
+            maps: None,
+            models: Slots::new(),
+            uploaded: None,
+            pending: Pending::default(),
+            uploads: 0,
+        }
+    }
+}
+
+impl LiveScene {
+    /// An empty scene in the dark.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a model with its meshes, materials and lights. Its cameras and its environment are left out.
+    ///
+    /// # Errors
+    /// [`EmbedError::Asset`] says what does not fit; a scene that was imported fits.
+    pub fn insert(&mut self, asset: &Scene) -> Result<ModelId, EmbedError> {
+        check::check(asset)?;
+        self.settle_materials();
+        let (index, generation) = self.models.insert(merge::append(&mut self.scene, asset));
+        self.pending.all = true;
+        Ok(ModelId { scene: self.id, index, generation })
+    }
+
+    /// Takes a model out.
+    ///
+    /// # Errors
+    /// [`EmbedError::StaleHandle`] where it is gone already.
+    pub fn remove(&mut self, id: ModelId) -> Result<(), EmbedError> {
+        self.model(id)?;
+        self.settle_materials();
+        let removed = self.models.remove((id.index, id.generation)).ok_or(EmbedError::StaleHandle)?;
+        merge::remove(&mut self.scene, &removed);
+        self.models.values_mut().for_each(|model| *model = merge::moved_up(model, &removed));
+        self.pending.all = true;
+        Ok(())
+    }
+
+    /// Places a model in the world.
+    ///
+    /// # Errors
+    /// For a stale handle or a matrix that is not finite.
+    pub fn set_transform(&mut self, id: ModelId, world_from_model: DMat4) -> Result<(), EmbedError> {
+        let root = self.model(id)?.first.nodes;
+        self.place(root, world_from_model)
+    }
+
+    /// Places nodes of a model, numbered as in its asset, each in its parent.
+    ///
+    /// # Errors
+    /// For a stale handle, a node that is not there or a matrix that is not finite; the nodes before it have been placed.
+    pub fn set_nodes(
+        &mut self,
+        id: ModelId,
+        parent_from_nodes: impl IntoIterator<Item = (usize, DMat4)>,
+    ) -> Result<(), EmbedError> {
+        let Model { first, count } = *self.model(id)?;
+        // The first one is not of the asset.
+        let count = count.nodes - 1;
+        for (node, parent_from_node) in parent_from_nodes {
+            let node = below("node", node, count)?;
+            self.place(first.nodes + 1 + node, parent_from_node)?;
+        }
+        Ok(())
+    }
+
+    /// Replaces a material of a model, numbered as in its asset, as are the textures that it may refer to.
+    ///
+    /// # Errors
+    /// For a stale handle, and for materials, textures and texture coordinates that are not there.
+    pub fn set_material(&mut self, id: ModelId, material: usize, new: Material) -> Result<(), EmbedError> {
+        let model = *self.model(id)?;
+        let place = model.first.materials + below("material", material, model.count.materials)?;
+        for (_, texture) in new.textures() {
+            below("texture", texture.texture, model.count.textures)?;
+        }
+        let meshes = &self.scene.meshes[model.first.meshes..model.first.meshes + model.count.meshes];
+        let users = meshes.iter().flat_map(|mesh| &mesh.primitives).filter(|primitive| primitive.material == place);
+        users.into_iter().try_for_each(|primitive| check::check_uvs(&new, primitive))?;
+        self.pending.materials.retain(|(pending, _)| *pending != place);
+        self.pending.materials.push((place, merge::of_model(new, &model)));
+        Ok(())
+    }
+
+    /// Replaces a light of a model, numbered as in its asset.
+    ///
+    /// # Errors
+    /// For a stale handle, a light that is not there, or one whose numbers are not finite or below 0.
+    pub fn set_light(&mut self, id: ModelId, light: usize, new: Light) -> Result<(), EmbedError> {
+        let Model { first, count } = *self.model(id)?;
+        let light = below("light", light, count.lights)?;
+        check::check_light(&new)?;
+        self.scene.lights[first.lights + light] = new;
+        self.pending.lights = true;
+        Ok(())
+    }
+
+    /// Sets what the scene stands in: an environment and the maps that were baked from its image; `None` is darkness.
+    pub fn set_environment(&mut self, environment: Option<(Environment, Arc<EnvironmentMaps>)>) {
+        (self.scene.environment, self.maps) = environment.unzip();
+        self.pending.all = true;
+    }
+
+    /// Turns the environment about +Y, rad, and sets the factor of its radiance. Does nothing in the dark.
+    ///
+    /// # Errors
+    /// For an angle that is not finite, and for an intensity that is not or is below 0.
+    pub fn turn_environment(&mut self, rotation_rad: f64, intensity: f64) -> Result<(), EmbedError> {
+        number("the environment's rotation", rotation_rad, rotation_rad.is_finite(), "a finite angle, rad")?;
+        let is_positive = intensity >= 0.0 && intensity.is_finite();
+        number("the environment's intensity", intensity, is_positive, "a finite number from 0 up")?;
+        if let Some(environment) = &mut self.scene.environment {
+            (environment.rotation_rad, environment.intensity) = (rotation_rad, intensity);
+            self.pending.environment = true;
+        }
+        Ok(())
+    }
+
+    /// Everything as it will be drawn after the next update, materials that wait for it apart. Its indices are its own.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// How often the whole scene was uploaded.
+    pub fn uploads(&self) -> u64 {
+        self.uploads
+    }
+
+    /// Brings all changes to the device of `renderer`, and returns what that draws. For another renderer than at the last
+    /// time, everything is uploaded. Edits are written when the queue is submitted to next: what was recorded before and
+    /// not submitted shows them too.
+    ///
+    /// # Errors
+    /// Where the scene does not fit on the device. The changes stay to be made.
+    pub fn update(
+        &mut self,
+        renderer: &Renderer,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+    ) -> Result<&mut GpuScene, EmbedError> {
+        let uploaded =
+            self.uploaded.take().filter(|uploaded| uploaded.renderer == renderer.identity && !self.pending.all);
+        let uploaded = uploaded.and_then(|mut uploaded| self.write(queue, &mut uploaded.scene).then_some(uploaded));
+        let uploaded = match uploaded {
+            Some(uploaded) => uploaded,
+            None => {
+                self.pending.all = true;
+                self.settle_materials();
+                let scene = renderer.upload(device, queue, &self.scene, self.maps.as_deref())?;
+                self.uploads += 1;
+                Uploaded { renderer: renderer.identity.clone(), scene }
+            }
+        };
+        self.pending = Pending::default();
+        Ok(&mut self.uploaded.insert(uploaded).scene)
+    }
+
+    /// Writes what has changed into the buffers that are there. False where something does not fit.
+    fn write(&mut self, queue: &wgpu::Queue, uploaded: &mut GpuScene) -> bool {
+        let (moved, lights, environment) = (self.pending.moved, self.pending.lights, self.pending.environment);
+        for (index, new) in std::mem::take(&mut self.pending.materials) {
+            let fits = uploaded.set_material(queue, &self.scene, index, &new);
+            self.scene.materials[index] = new;
+            self.pending.all |= !fits;
+        }
+        if self.pending.all || (moved && !uploaded.move_instances(queue, &self.scene.instances())) {
+            return false;
+        }
+        let has_lights = !self.scene.lights.is_empty();
+        if (lights || (moved && has_lights)) && !uploaded.set_lights(queue, &self.scene) {
+            return false;
+        }
+        let Some(maps) = &self.maps else { return true };
+        !environment || uploaded.set_environment(queue, &self.scene, maps)
+    }
+
+    /// Materials as they are to be, for an upload.
+    fn settle_materials(&mut self) {
+        for (index, new) in std::mem::take(&mut self.pending.materials) {
+            self.scene.materials[index] = new;
+            self.pending.all = true;
+        }
+    }
+
+    fn place(&mut self, node: usize, parent_from_node: DMat4) -> Result<(), EmbedError> {
+        let numbers = parent_from_node.to_cols_array();
+        let not_finite = numbers.into_iter().find(|number| !number.is_finite());
+        if let Some(value) = not_finite {
+            number("a number of a transform", value, false, "a finite number")?;
+        }
+        self.scene.nodes[node].parent_from_node = parent_from_node;
+        self.pending.moved = true;
+        Ok(())
+    }
+
+    fn model(&self, id: ModelId) -> Result<&Model, EmbedError> {
+        let model = self.models.get((id.index, id.generation)).filter(|_| id.scene == self.id);
+        model.ok_or(EmbedError::StaleHandle)
+    }
+}
+
+fn below(what: &'static str, index: usize, count: usize) -> Result<usize, EmbedError> {
+    if index < count { Ok(index) } else { Err(EmbedError::NoSuch { what, index, count }) }
+}
+
+fn number(what: &'static str, value: f64, is_valid: bool, expected: &'static str) -> Result<(), EmbedError> {
+    if is_valid { Ok(()) } else { Err(EmbedError::Number { what, value, expected }) }
+}
