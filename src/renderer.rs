@@ -1,7 +1,7 @@
 //! The facade: scenes in, passes recorded.
 //!
-//! [`Renderer`] holds what lives as long as the device. It never polls or prints, and frames it records into the
-//! caller's encoder; only uploads are submitted.
+//! [`Renderer`] holds what lives as long as the device. It never prints, and frames it records into the
+//! caller's encoder; only uploads are submitted, and waited for, so that little is staged at a time.
 
 mod frame_state;
 mod target;
