@@ -59,6 +59,8 @@ enum Command {
     Test(Box<test::TestArgs>),
     /// Make pictures of the last `specula test` goldens.
     Accept(test::AcceptArgs),
+    /// Join the reports of a suite whose cases several processes have shared.
+    MergeReports(test::MergeArgs),
     /// Regenerate the tables that are part of the program.
     Bake(bake::BakeArgs),
     /// Measure what f32 on this device makes of the shading model, and search it for faults.
@@ -78,6 +80,7 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Test(args) => test::run(&args),
         Command::Accept(args) => test::accept(&args),
+        Command::MergeReports(args) => test::merge(&args),
         Command::Bake(args) => bake::run(&args),
         Command::Stability(args) => stability::run(&args),
     };

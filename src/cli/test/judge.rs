@@ -3,9 +3,9 @@
 use super::comparison::{Comparison, compare, read_golden};
 use super::golden;
 use super::limits::Compared;
-use super::report::{AdapterReport, CaseReport, Kind, MetricReport, Paths, Provenance, Status, Times};
+use super::report::{AdapterReport, Blobs, CaseReport, Kind, MetricReport, Paths, Provenance, Status, Times};
 use super::stage::Drawn;
-use super::suite::{Case, Suite};
+use super::suite::{Case, Suite, default_out};
 use crate::cli::error::CliError;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -48,6 +48,7 @@ struct Trial<'a> {
 pub(super) fn without_picture(case: &Case, status: Status, reason: Option<String>) -> CaseReport {
     CaseReport {
         id: case.id.clone(),
+        index: case.index,
         kind: case.kind,
         status,
         reason,
@@ -56,6 +57,7 @@ pub(super) fn without_picture(case: &Case, status: Status, reason: Option<String
         settings: case.settings.clone(),
         metrics: Vec::new(),
         paths: Paths::default(),
+        blobs: Blobs::default(),
         provenance: None,
         golden_provenance: None,
         accept: None,
@@ -165,7 +167,7 @@ impl Trial<'_> {
             (self.report.status, self.report.golden_written) = (Status::Pass, true);
             self.report.reason = Some("the picture has become the golden".into());
         } else {
-            self.report.accept = Some(accept_command(suite, &self.case.id, out));
+            self.report.accept = Some(accept_command(&suite.file, &self.case.id, out));
         }
         Ok(())
     }
@@ -289,12 +291,12 @@ impl Trial<'_> {
 }
 
 /// What a user types to make the picture of the last run the golden.
-pub(super) fn accept_command(suite: &Suite, id: &str, out: &Path) -> String {
+pub(super) fn accept_command(suite: &Path, id: &str, out: &Path) -> String {
     let quoted = |path: &Path| {
         let text = path.display().to_string();
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=,:@%".contains(c);
         if text.chars().all(is_plain) && !text.is_empty() { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
     };
-    let place = if out == suite.default_out() { String::new() } else { format!(" --out {}", quoted(out)) };
-    format!("specula accept {} {id}{place}", quoted(&suite.file))
+    let place = if out == default_out(suite) { String::new() } else { format!(" --out {}", quoted(out)) };
+    format!("specula accept {} {id}{place}", quoted(suite))
 }

@@ -4,18 +4,30 @@
 
 mod accept;
 mod adapter;
+mod annotations;
+mod blobs;
 mod comparison;
 mod date;
 mod golden;
 mod judge;
+mod junit;
 mod limits;
+mod merge;
+mod page;
+mod part;
+mod partition;
+mod publish;
 mod report;
 mod run;
+#[cfg(test)]
+mod schema;
 mod stage;
 mod suite;
 mod text;
+mod verdicts;
 
 pub(super) use accept::{AcceptArgs, run as accept};
+pub(super) use merge::{MergeArgs, run as merge};
 
 use super::driver::DeviceArgs;
 use super::environment::CacheArgs;
@@ -26,6 +38,8 @@ use super::progress::StderrProgress;
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, GpuOptions};
 use judge::{Judge, Update};
+use part::PartArgs;
+use publish::PublishArgs;
 use report::{AdapterReport, SuiteReport};
 use run::Plan;
 use std::path::{Path, PathBuf};
@@ -53,18 +67,22 @@ pub(super) struct TestArgs {
     /// Write goldens: those that are missing (new), those that pictures fail against (changed), or all that differ.
     #[arg(long, value_enum, value_name = "new|changed|all")]
     update: Option<Update>,
-    /// Where pictures and report.json go [default: the suite's name with .out, beside it].
+    /// Where pictures, report.html, report.json and junit.xml go [default: the suite's name with .out, beside it].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads that compare and write, beside the one that draws.
     #[arg(short, long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     jobs: u16,
     #[command(flatten)]
+    part: PartArgs,
+    #[command(flatten)]
+    publish: PublishArgs,
+    #[command(flatten)]
     device: DeviceArgs,
     #[command(flatten)]
     cache: CacheArgs,
     /// Print report.json instead of text.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "github")]
     json: bool,
     /// Print no progress.
     #[arg(short, long)]
@@ -75,10 +93,12 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let suite = Suite::read(&args.suite, &args.cache)?;
     let chosen = chosen(&suite, &args.filter)?;
+    let (cases, part) = args.part.take(&chosen)?;
     if args.list {
-        let names: String = chosen.iter().map(|case| format!("{}\n", case.id)).collect();
+        let names: String = cases.iter().map(|case| format!("{}\n", case.id)).collect();
         return output::write(Path::new("-"), names.as_bytes());
     }
+    // Of all parts, so that they draw alike.
     let precisions = chosen.iter().map(|case| case.args.frame.precision());
     let precision = precisions.max_by_key(|precision| *precision == Precision::Float).unwrap_or_default();
     let gpu = Gpu::open(&args.device.request(), GpuOptions { precision }).map_err(CliError::NeedsAdapter)?;
@@ -90,21 +110,25 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     report::forget(&out)?;
     let progress = StderrProgress::new(args.quiet);
     let judge = Judge { suite: &suite, adapter: &adapter, out: &out, update: args.update, times: args.repeat };
-    let plan = Plan { cases: &chosen, judge: &judge, jobs: args.jobs.into(), cache: &args.cache };
+    let plan = Plan { cases: &cases, judge: &judge, jobs: args.jobs.into(), cache: &args.cache };
     let cases = plan.run(&gpu, &progress);
     progress.finish();
-    let report = SuiteReport {
+    let mut report = SuiteReport {
         schema: report::SCHEMA.into(),
         suite: suite.name.clone(),
         suite_file: suite.file.clone(),
         suite_hash: suite.hash.clone(),
         version: env!("CARGO_PKG_VERSION").into(),
         adapter: adapter.clone(),
+        part,
         cases_in_suite: suite.cases.len(),
         cases,
         milliseconds: start.elapsed().as_secs_f64() * 1e3,
     };
-    report.write(&out)?;
+    if report.part.is_some() {
+        blobs::gather(&mut report, &out, &out)?;
+    }
+    publish::publish(&report, &out, &args.publish)?;
     let text = if args.json { report.json()? } else { text::text(&report, &out) };
     output::write(Path::new("-"), text.as_bytes())?;
     verdict(&report)

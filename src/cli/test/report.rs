@@ -25,12 +25,27 @@ pub(in crate::cli) struct SuiteReport {
     /// Version of Specula.
     pub(in crate::cli) version: String,
     pub(in crate::cli) adapter: AdapterReport,
+    /// Which part of a run this is; none where it is the whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in crate::cli) part: Option<PartReport>,
     /// Cases of the whole suite, with those that were filtered out or belong to other parts.
     pub(in crate::cli) cases_in_suite: usize,
     /// Those of this run, in the order of the suite.
     pub(in crate::cli) cases: Vec<CaseReport>,
     /// Wall time of the whole run.
     pub(in crate::cli) milliseconds: f64,
+}
+
+/// A part of a run that several processes share.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(in crate::cli) struct PartReport {
+    /// How the cases are shared: `slice`, `hash` or `weight`.
+    pub(in crate::cli) scheme: String,
+    /// From 1 to `of`.
+    pub(in crate::cli) number: usize,
+    pub(in crate::cli) of: usize,
+    /// Cases of all parts together.
+    pub(in crate::cli) cases: usize,
 }
 
 /// What drew.
@@ -75,6 +90,8 @@ pub(in crate::cli) enum Kind {
 pub(in crate::cli) struct CaseReport {
     /// Unique in the suite: its name, and what a matrix has made of it. Also a relative path with `/`.
     pub(in crate::cli) id: String,
+    /// Its place in the suite, from 0.
+    pub(in crate::cli) index: usize,
     pub(in crate::cli) kind: Kind,
     pub(in crate::cli) status: Status,
     /// Why it was skipped, is in error, or failed without a metric; one line.
@@ -87,6 +104,9 @@ pub(in crate::cli) struct CaseReport {
     /// Empty where nothing was compared.
     pub(in crate::cli) metrics: Vec<MetricReport>,
     pub(in crate::cli) paths: Paths,
+    /// Pictures that are kept beside the report, wherever it is taken.
+    #[serde(default, skip_serializing_if = "Blobs::is_empty")]
+    pub(in crate::cli) blobs: Blobs,
     /// Of the picture of this run.
     pub(in crate::cli) provenance: Option<Provenance>,
     /// Of the golden, as far as it says.
@@ -128,6 +148,21 @@ pub(in crate::cli) struct Paths {
     pub(in crate::cli) heat_map: Option<PathBuf>,
     /// BLAKE3 of the file of `actual`.
     pub(in crate::cli) actual_hash: Option<String>,
+}
+
+/// BLAKE3 of pictures; each is the file `blobs/HASH.png` in the folder of the report.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(in crate::cli) struct Blobs {
+    pub(in crate::cli) actual: Option<String>,
+    pub(in crate::cli) golden: Option<String>,
+    pub(in crate::cli) difference: Option<String>,
+    pub(in crate::cli) heat_map: Option<String>,
+}
+
+impl Blobs {
+    pub(in crate::cli) fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// What a picture was made by and of.
@@ -243,10 +278,11 @@ pub(in crate::cli) mod tests {
             remark: String::new(),
         };
         let states = [Status::Pass, Status::Fail, Status::Skipped, Status::Error, Status::New];
-        let case = |status: Status| {
+        let case = |(index, status): (usize, Status)| {
             let is_failure = status == Status::Fail;
             CaseReport {
                 id: format!("helmet/quality={status:?}"),
+                index,
                 kind: Kind::Golden,
                 status,
                 reason: matches!(status, Status::Skipped | Status::Error).then(|| "a reason".into()),
@@ -255,6 +291,7 @@ pub(in crate::cli) mod tests {
                 settings: provenance.settings.clone(),
                 metrics: vec![metric("flip.mean", if is_failure { 0.02 } else { 0.001 }, !is_failure)],
                 paths: Paths::default(),
+                blobs: Blobs::default(),
                 provenance: Some(provenance.clone()),
                 golden_provenance: None,
                 accept: is_failure.then(|| "specula accept suite.toml helmet".into()),
@@ -269,8 +306,9 @@ pub(in crate::cli) mod tests {
             suite_hash: "a0".repeat(32),
             version: "0.1.0".into(),
             adapter,
+            part: None,
             cases_in_suite: states.len(),
-            cases: states.map(case).into(),
+            cases: states.into_iter().enumerate().map(case).collect(),
             milliseconds: 12.5,
         }
     }

@@ -1,5 +1,6 @@
 //! A run for people: a line for each case, and what is needed to act on those that failed.
 
+use super::publish;
 use super::report::{CaseReport, Kind, MetricReport, Status, SuiteReport};
 use crate::cli::compare::number;
 use std::fmt::Write;
@@ -30,7 +31,7 @@ pub(super) fn text(report: &SuiteReport, out: &Path) -> String {
         "{}: {counts}, in {seconds:.1} s on {}; {}",
         report.suite,
         report.adapter.class,
-        out.join(super::report::FILE_NAME).display()
+        out.join(publish::PAGE).display()
     );
     text
 }
@@ -62,22 +63,27 @@ fn write_case(text: &mut String, case: &CaseReport) -> std::fmt::Result {
             writeln!(text, "        {name:10} {}", path.display())?;
         }
     }
-    if let (Some(now), Some(then)) = (&case.provenance, &case.golden_provenance) {
-        let changes = [
-            ("the scene's files", now.scene_hash != then.scene_hash),
-            ("the settings", now.settings_hash != then.settings_hash),
-            ("the adapter", now.adapter != then.adapter),
-            ("the version of Specula", now.version != then.version),
-        ];
-        let changed: Vec<&str> = changes.into_iter().filter(|(_, changed)| *changed).map(|(name, _)| name).collect();
-        let changed = if changed.is_empty() { "nothing but the program".to_owned() } else { changed.join(", ") };
+    if let Some(changed) = changed(case) {
         writeln!(text, "        {:10} {changed}", "changed")?;
     }
     case.accept.iter().try_for_each(|command| writeln!(text, "        {:10} {command}", "accept"))
 }
 
+/// What is not as it was when the golden was drawn, as far as that is known.
+pub(super) fn changed(case: &CaseReport) -> Option<String> {
+    let (now, then) = (case.provenance.as_ref()?, case.golden_provenance.as_ref()?);
+    let changes = [
+        ("the scene's files", now.scene_hash != then.scene_hash),
+        ("the settings", now.settings_hash != then.settings_hash),
+        ("the adapter", now.adapter != then.adapter),
+        ("the version of Specula", now.version != then.version),
+    ];
+    let changed: Vec<&str> = changes.into_iter().filter(|(_, changed)| *changed).map(|(name, _)| name).collect();
+    Some(if changed.is_empty() { "nothing but the program".to_owned() } else { changed.join(", ") })
+}
+
 /// `flip.mean is 0.0213, not <= 0.004 (suite.toml:12)`.
-fn broken(metric: &MetricReport) -> String {
+pub(super) fn broken(metric: &MetricReport) -> String {
     let value = metric.value.map_or_else(|| "not a finite number".to_owned(), number);
     let remark = if metric.remark.is_empty() { String::new() } else { format!("; {}", metric.remark) };
     let MetricReport { name, comparison, limit, limit_from, .. } = metric;

@@ -21,6 +21,8 @@ const MATRIX_MAX: usize = 10_000;
 pub(in crate::cli::test) struct Case {
     /// Unique; also the path of its files, with `/`.
     pub(in crate::cli::test) id: String,
+    /// Its place among the cases of the suite, from 0.
+    pub(in crate::cli::test) index: usize,
     /// Where it begins in the file, from 1.
     pub(in crate::cli::test) line: usize,
     pub(in crate::cli::test) kind: Kind,
@@ -153,6 +155,8 @@ impl Own {
         let mask = self.mask.as_ref().or(defaults.mask.as_ref().filter(|_| self.kind != Kind::Furnace));
         Ok(Case {
             id,
+            // Known when all cases are.
+            index: 0,
             line,
             kind: self.kind,
             model,

@@ -98,6 +98,9 @@ impl Suite {
                 suite.cases.extend(case::cases(source, &table, &defaults, folder)?);
             }
         }
+        for (index, case) in suite.cases.iter_mut().enumerate() {
+            case.index = index;
+        }
         root.finish(&["suite", "defaults", "class", "case"])?;
         suite.check(source)?;
         Ok(suite)
@@ -186,8 +189,13 @@ impl Suite {
 
     /// Where a run leaves what it finds, unless it is told: beside the suite.
     pub(super) fn default_out(&self) -> PathBuf {
-        self.file.with_extension("out")
+        default_out(&self.file)
     }
+}
+
+/// [`Suite::default_out`] by the suite's file.
+pub(super) fn default_out(suite: &Path) -> PathBuf {
+    suite.with_extension("out")
 }
 
 impl Defaults {

@@ -1,0 +1,36 @@
+//! The files of a finished run: the page for people, JUnit XML for CI systems, JSON for all else.
+
+use super::report::SuiteReport;
+use super::{annotations, golden, junit, page};
+use crate::cli::error::CliError;
+use crate::cli::output;
+use std::path::Path;
+
+/// Names of the files in the folder of a run.
+pub(super) const PAGE: &str = "report.html";
+pub(super) const JUNIT: &str = "junit.xml";
+
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct PublishArgs {
+    /// Most that the pictures in report.html may take together; those of the worst cases go first.
+    #[arg(long, value_name = "MIB", default_value_t = 32)]
+    page_limit: u32,
+    /// Print failures as workflow commands of GitHub Actions, which shows them beside the lines of the suite.
+    #[arg(long)]
+    github: bool,
+}
+
+/// Writes all files of the report into `folder`, where its blobs are too; `report.json` comes last, when all is there.
+///
+/// # Errors
+/// When a picture cannot be read or a file cannot be written.
+pub(super) fn publish(report: &SuiteReport, folder: &Path, args: &PublishArgs) -> Result<(), CliError> {
+    let limit = u64::from(args.page_limit) << 20;
+    golden::write_in_folders(&folder.join(PAGE), page::html(report, folder, limit)?.as_bytes())?;
+    golden::write_in_folders(&folder.join(JUNIT), junit::xml(report)?.as_bytes())?;
+    report.write(folder)?;
+    if args.github {
+        output::write(Path::new("-"), annotations::github(report).as_bytes())?;
+    }
+    Ok(())
+}
