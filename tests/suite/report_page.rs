@@ -89,8 +89,8 @@ fn slider(browser: &mut Browser) {
     assert_eq!(places.map(|at| shown(&picture, at)), ["golden", "golden", "actual", "actual"]);
     // The same by its own control.
     browser.click(&format!("{CASE} .divide input"));
-    let picture = browser.screenshot("slider-half");
     let places = [0.45, 0.55].map(|x| browser.place(&view("actual"), x, 0.5));
+    let picture = browser.screenshot("slider-half");
     assert_eq!(places.map(|at| shown(&picture, at)), ["golden", "actual"]);
 }
 

@@ -49,7 +49,8 @@ impl CaseReport {
     /// What is wrong, a line each: the reason, then the limits that are broken.
     pub(super) fn complaints(&self) -> Vec<String> {
         let broken = self.metrics.iter().filter(|metric| !metric.holds).map(broken);
-        self.reason.iter().cloned().chain(broken).collect()
+        let no_golden = (self.status == Status::New && self.reason.is_none()).then(|| "there is no golden yet".into());
+        self.reason.iter().cloned().chain(no_golden).chain(broken).collect()
     }
 
     pub(super) fn milliseconds(&self) -> f64 {

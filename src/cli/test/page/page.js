@@ -164,6 +164,8 @@ class Stage {
                 this.origin.x -= (now.x - last.x) / this.zoom;
                 this.origin.y -= (now.y - last.y) / this.zoom;
                 this.place();
+                // The pixel was marked where it was before.
+                this.point(view, event);
             }
             last = now;
         };
@@ -215,7 +217,7 @@ class Stage {
         if (event.ctrlKey || event.altKey || event.metaKey || event.target !== this.element) return;
         const step = 0.1 / this.zoom;
         const pan = (x, y) => () => {
-            if (this.element.dataset.mode === "slider" && x !== 0) return this.divide(Number(this.split.value) + 10 * x * this.zoom * 2);
+            if (this.element.dataset.mode === "slider" && x !== 0) return this.divide(Number(this.split.value) + 2 * Math.sign(x));
             this.origin.x += x;
             this.origin.y += y;
             this.place();
