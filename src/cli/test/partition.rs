@@ -258,7 +258,7 @@ mod tests {
         let (few, more) = (parts("hash", 3, &[None; 3000]), parts("hash", 3, &[None; 3001]));
         for (few, more) in few.iter().zip(&more) {
             assert!(more.starts_with(few));
-// A thousand, but for what chance does: a standard deviation of 26.
+            // A thousand, but for what chance does: a standard deviation of 26.
             assert!(few.len().abs_diff(1000) < 100, "{}", few.len());
         }
     }

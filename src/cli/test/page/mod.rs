@@ -132,7 +132,7 @@ fn worst(case: &CaseReport) -> Markup {
         (_, Some(reason)) => name(reason),
         (Some(metric), None) => html! {
             span.broken[!metric.holds] {
-                (name(&metric.name)) " " (metric.value.map_or_else(|| "–".into(), number)) " (" (name(&metric.comparison)) " " (metric.limit) ")"
+                (name(&metric.name)) ": " (metric.value.map_or_else(|| "–".into(), number)) " (" (name(&metric.comparison)) " " (metric.limit) ")"
             }
         },
         (None, None) => html! {},
