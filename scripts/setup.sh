@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks that the project can be built and that a Vulkan driver is there; installs Mesa's software driver where neither
 # a question nor a password stands in the way. Changes nothing else, and nothing at all when all is there.
+# With --for-tests also Chromium and GNU parallel, which tests use where they are; going without is no failure.
 set -eu
 
 say() { printf '%s\n' "setup: $*" >&2; }
@@ -52,15 +53,19 @@ install_command() {
     fi
 }
 
+# install_with_apt PACKAGE...
 install_with_apt() {
     prefix=$(root_prefix) || return 1
-    say 'no Vulkan driver found: installing mesa-vulkan-drivers (Mesa, draws on the CPU where there is no GPU)'
-    # The prefix is one or more words by design.
+    say "installing $*"
+    packages=$*
+    # The prefix is one or more words by design, and so are the packages. Without a network it should not take long to fail.
     # shellcheck disable=SC2086
-    set -- $prefix DEBIAN_FRONTEND=noninteractive apt-get --quiet --quiet
-    "$@" install --yes --no-install-recommends mesa-vulkan-drivers >&2 && return 0
+    set -- $prefix DEBIAN_FRONTEND=noninteractive apt-get --quiet --quiet -o Acquire::http::Timeout=20 -o Acquire::Retries=1
+    # shellcheck disable=SC2086
+    "$@" install --yes --no-install-recommends $packages >&2 && return 0
     say 'refreshing the package lists and trying again'
-    "$@" update >&2 && "$@" install --yes --no-install-recommends mesa-vulkan-drivers >&2
+    # shellcheck disable=SC2086
+    "$@" update >&2 && "$@" install --yes --no-install-recommends $packages >&2
 }
 
 if ! command -v cargo >/dev/null; then
@@ -70,8 +75,12 @@ fi
 
 # Elsewhere the system's own Metal or Direct3D is used.
 [ "$(uname -s)" = Linux ] || exit 0
+if [ "${1:-}" = --for-tests ] && ! { command -v chromium && command -v parallel; } >/dev/null; then
+    command -v apt-get >/dev/null && install_with_apt chromium parallel || say 'tests that need Chromium or GNU parallel will be skipped'
+fi
 have_vulkan_loader && have_vulkan_driver && exit 0
-if command -v apt-get >/dev/null && install_with_apt; then
+say 'no Vulkan driver found; Mesa has one that draws on the CPU where there is no GPU'
+if command -v apt-get >/dev/null && install_with_apt mesa-vulkan-drivers; then
     exit 0
 fi
 say "no Vulkan driver could be installed from here; run: $(install_command)"

@@ -136,34 +136,55 @@ fn recipe(name: &str) -> String {
     rest.split_once("```").expect("the recipe ends").0.to_owned()
 }
 
-#[test]
-fn the_recipe_for_gnu_parallel_works() {
-    let is_gnu =
-        Command::new("parallel").arg("--version").output().is_ok_and(|out| out.stdout.starts_with(b"GNU parallel"));
-    if !is_gnu {
-        println!("skipped: no GNU parallel; apt-get install parallel");
-        return;
-    }
+/// Follows a recipe in the folder, with the program on the path.
+fn follow(folder: &Path, recipe: &str) -> Output {
+    let program = program();
+    let own = Path::new(program.get_program()).parent().unwrap().to_owned();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut shell = Command::new("sh");
+    shell.env("PATH", std::env::join_paths([own].into_iter().chain(std::env::split_paths(&path))).unwrap());
+    shell.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    shell.current_dir(folder).env("HOME", folder).args(["-ec", recipe]).output().unwrap()
+}
+
+/// Follows a recipe for 4 parts with other numbers of them.
+fn follow_with(recipe: &str, four: &str, numbers: &[usize]) {
     let suite = suite();
     let folder = suite.path();
     let whole = whole(folder);
-    let recipe = recipe("parallel");
-    assert!(recipe.starts_with("parts=4\n"), "{recipe}");
-    for parts in [1, 2, 4] {
-        let recipe = recipe.replace("parts=4\n", &format!("parts={parts}\n"));
-        let program = program();
-        let mut shell = Command::new("sh");
-        let folders = [Path::new(program.get_program()).parent().unwrap().to_owned()];
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        shell.env("PATH", std::env::join_paths(folders.into_iter().chain(std::env::split_paths(&path))).unwrap());
-        shell.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
-        let output = shell.current_dir(folder).env("HOME", folder).args(["-ec", &recipe]).output().unwrap();
+    assert_eq!(whole["cases_in_suite"], json!(14));
+    assert!(recipe.contains(four), "{recipe}");
+    for number in numbers {
+        let output = follow(folder, &recipe.replace(four, &four.replace('4', &number.to_string())));
         assert_eq!(output.status.code(), Some(1), "the furnace fails: {}", stderr(&output));
-        let merged = timeless(&folder.join("report"));
-        assert_eq!(merged, whole, "{parts} parts");
-        assert_eq!(merged["cases_in_suite"], json!(14));
+        assert_eq!(std::fs::read_dir(folder.join("parts")).unwrap().count(), *number);
+        assert_eq!(timeless(&folder.join("report")), whole, "{number} parts");
         for name in ["report", "parts"] {
             std::fs::remove_dir_all(folder.join(name)).unwrap();
         }
+    }
+}
+
+/// What a command prints when it works.
+fn printed(program: &str, argument: &str) -> Option<String> {
+    let output = Command::new(program).arg(argument).output().ok().filter(|output| output.status.success())?;
+    String::from_utf8(output.stdout).ok()
+}
+
+#[test]
+fn the_recipe_for_gnu_parallel_works() {
+    if printed("parallel", "--version").is_some_and(|version| version.starts_with("GNU parallel")) {
+        follow_with(&recipe("parallel"), "parts=4", &[1, 2, 4]);
+    } else {
+        println!("skipped: no GNU parallel; apt-get install parallel");
+    }
+}
+
+#[test]
+fn the_recipe_for_slurm_works() {
+    if printed("sinfo", "--noheader").is_some_and(|nodes| nodes.contains("idle")) {
+        follow_with(&recipe("slurm"), "--array=1-4", &[1, 2, 4]);
+    } else {
+        println!("skipped: no Slurm with an idle node");
     }
 }
