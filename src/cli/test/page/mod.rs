@@ -32,7 +32,7 @@ const MODES: [(&str, &str); 5] = [
 /// The page of the report that is in `folder`, with pictures of at most `limit_bytes` together.
 ///
 /// # Errors
-/// When a picture cannot be read.
+/// When the report cannot be written as JSON.
 pub(super) fn html(report: &SuiteReport, folder: &Path, limit_bytes: u64) -> Result<String, CliError> {
     let nonce = blake3::hash(report.json()?.as_bytes()).to_hex();
     let policy = format!(
@@ -43,7 +43,7 @@ pub(super) fn html(report: &SuiteReport, folder: &Path, limit_bytes: u64) -> Res
     let mut cases = Vec::new();
     for (index, case) in report.by_error().into_iter().enumerate() {
         let is_open = index < OPEN && case.status.is_broken();
-        cases.push(of_case(case, &budget.take(case)?, is_open));
+        cases.push(of_case(case, &budget.take(case), is_open));
     }
     let page = html! {
         (DOCTYPE)
