@@ -4,6 +4,8 @@
 //! the script with the nonce, which is a hash of the report: no name in a report can contain it.
 
 mod pictures;
+#[cfg(test)]
+mod tests;
 
 use super::report::{AdapterReport, CaseReport, MetricReport, Provenance, Status, SuiteReport};
 use super::text::changed;
