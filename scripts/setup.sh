@@ -1,7 +1,8 @@
 #!/bin/sh
 # Checks that the project can be built and that a Vulkan driver is there; installs Mesa's software driver where neither
 # a question nor a password stands in the way. Changes nothing else, and nothing at all when all is there.
-# `scripts/setup.sh window` also wants what the tests of the viewer need: an X server without a screen, and input for it.
+# Tests use more where it is there, and go without it otherwise: `window` installs an X server without a screen and input for it,
+# for those of the viewer, `browser` installs Chromium and GNU parallel, for those of suites.
 set -eu
 
 say() { printf '%s\n' "setup: $*" >&2; }
@@ -57,9 +58,10 @@ install_command() {
 install_with_apt() {
     packages=$*
     prefix=$(root_prefix) || return 1
-    # The prefix is one or more words by design.
+    say "installing $*"
+    # The prefix is one or more words by design, and so are the packages. Without a network it should not take long to fail.
     # shellcheck disable=SC2086
-    set -- $prefix DEBIAN_FRONTEND=noninteractive apt-get --quiet --quiet
+    set -- $prefix DEBIAN_FRONTEND=noninteractive apt-get --quiet --quiet -o Acquire::http::Timeout=20 -o Acquire::Retries=1
     # shellcheck disable=SC2086
     "$@" install --yes --no-install-recommends $packages >&2 && return 0
     say 'refreshing the package lists and trying again'
@@ -74,13 +76,22 @@ fi
 
 # Elsewhere the system's own Metal or Direct3D is used.
 [ "$(uname -s)" = Linux ] || exit 0
-if [ "${1:-}" = window ] && ! { command -v Xvfb && command -v xdotool; } >/dev/null; then
-    say 'the tests of the viewer need Xvfb and xdotool: installing them'
-    { command -v apt-get >/dev/null && install_with_apt xvfb xdotool; } ||
-        say 'they could not be installed from here; the tests of the viewer will be skipped'
-fi
+
+# install_for_tests COMMAND COMMAND PACKAGE PACKAGE
+install_for_tests() {
+    { command -v "$1" && command -v "$2"; } >/dev/null && return
+    { command -v apt-get >/dev/null && install_with_apt "$3" "$4"; } || say "tests that need $1 or $2 will be skipped"
+}
+
+for wanted in "$@"; do
+    case $wanted in
+    window) install_for_tests Xvfb xdotool xvfb xdotool ;;
+    browser) install_for_tests chromium parallel chromium parallel ;;
+    esac
+done
+
 have_vulkan_loader && have_vulkan_driver && exit 0
-say 'no Vulkan driver found: installing mesa-vulkan-drivers (Mesa, draws on the CPU where there is no GPU)'
+say 'no Vulkan driver found; Mesa has one that draws on the CPU where there is no GPU'
 if command -v apt-get >/dev/null && install_with_apt mesa-vulkan-drivers; then
     exit 0
 fi

@@ -6,6 +6,10 @@ struct Shape {
     alpha: f32,
 }
 
+// Least squared cosine of half vectors in slopes, which grow without bound: where light and view both graze, in f32 they
+// would be infinite, and the share 0 times that. The share is 1 long before.
+const HALF_COS2_MIN: f32 = 1e-6;
+
 fn make_shape(surface: Surface, alpha: f32) -> Shape {
     return Shape(alpha);
 }
@@ -18,7 +22,7 @@ fn disc_share(shape: Shape, n: vec3f, h: vec3f, VoH: f32, spread: f32) -> f32 {
     let chord2 = dot(chord, chord);
     let sin2 = chord2 * (1.0 - 0.25 * chord2);
     let alpha2 = shape.alpha * shape.alpha;
-    let middle = alpha2 + sin2 / (1.0 - sin2);
+    let middle = alpha2 + sin2 / max(1.0 - sin2, HALF_COS2_MIN);
     let radius2 = spread / VoH;
     let x = middle - radius2;
     let s = sqrt(x * x + 4.0 * alpha2 * radius2);

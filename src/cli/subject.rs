@@ -8,7 +8,7 @@ use super::parallel::beside;
 use super::stats::Stopwatch;
 use crate::import::{ImportOptions, Imported, SceneChoice, model_from_path, model_from_slice};
 use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::scene::{Environment, Scene};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -63,6 +63,22 @@ impl SubjectArgs {
     /// Keeps prefiltered panoramas as `cache` says.
     pub(super) fn set_cache(&mut self, cache: &CacheArgs) {
         self.environment.cache = cache.clone();
+    }
+
+    /// Whether the other has the same model, materials and lights, whatever its surroundings.
+    pub(super) fn has_model_of(&self, other: &Self) -> bool {
+        self.model == other.model
+            && self.scene == other.scene
+            && self.overrides == other.overrides
+            && self.lights == other.lights
+    }
+
+    /// What lights the scene from around, without the rest.
+    ///
+    /// # Errors
+    /// When a flag is out of range, or the panorama cannot be read.
+    pub(super) fn load_environment(&self) -> Result<Option<Environment>, CliError> {
+        self.environment.load()
     }
 
     /// What lights the scene from around, as it was asked for: a file, or the name of a built-in environment.

@@ -62,22 +62,22 @@ impl Browser {
     }
 
     fn attach(&mut self, page: &Path) {
-        let target = self.call("Target.createTarget", json!({"url": "about:blank"}));
+        let target = self.call("Target.createTarget", &json!({"url": "about:blank"}));
         let attach = json!({"targetId": target["targetId"], "flatten": true});
-        self.session = Some(self.call("Target.attachToTarget", attach)["sessionId"].as_str().unwrap().to_owned());
+        self.session = Some(self.call("Target.attachToTarget", &attach)["sessionId"].as_str().unwrap().to_owned());
         for domain in ["Page", "Runtime", "Network", "Log"] {
-            self.call(&format!("{domain}.enable"), json!({}));
+            self.call(&format!("{domain}.enable"), &json!({}));
         }
         let (width, height) = WINDOW_PX;
         let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
-        self.call("Emulation.setDeviceMetricsOverride", metrics);
-        let answer = self.call("Page.navigate", json!({"url": format!("file://{}", page.display())}));
+        self.call("Emulation.setDeviceMetricsOverride", &metrics);
+        let answer = self.call("Page.navigate", &json!({"url": format!("file://{}", page.display())}));
         assert!(answer.get("errorText").is_none(), "{answer}");
         self.wait_for("location.protocol === 'file:' && document.readyState === 'complete'");
     }
 
     /// Calls a method and waits for its answer.
-    pub(crate) fn call(&mut self, method: &str, parameters: Value) -> Value {
+    pub(crate) fn call(&mut self, method: &str, parameters: &Value) -> Value {
         let id = self.next;
         self.next += 1;
         let mut request = json!({"id": id, "method": method, "params": parameters});
@@ -104,7 +104,7 @@ impl Browser {
 
     /// The value of an expression in the page.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
-        let answer = self.call("Runtime.evaluate", json!({"expression": expression, "returnByValue": true}));
+        let answer = self.call("Runtime.evaluate", &json!({"expression": expression, "returnByValue": true}));
         assert!(answer.get("exceptionDetails").is_none(), "{expression}: {answer}");
         answer["result"]["value"].clone()
     }
@@ -138,7 +138,7 @@ impl Browser {
     pub(crate) fn pointer(&mut self, kind: &str, (x, y): (f64, f64)) {
         let button = if kind == "mouseMoved" { "none" } else { "left" };
         let event = json!({"type": kind, "x": x, "y": y, "button": button, "clickCount": 1});
-        self.call("Input.dispatchMouseEvent", event);
+        self.call("Input.dispatchMouseEvent", &event);
     }
 
     pub(crate) fn click(&mut self, selector: &str) {
@@ -149,7 +149,7 @@ impl Browser {
 
     pub(crate) fn wheel(&mut self, (x, y): (f64, f64), down: f64) {
         let event = json!({"type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": down});
-        self.call("Input.dispatchMouseEvent", event);
+        self.call("Input.dispatchMouseEvent", &event);
     }
 
     pub(crate) fn key(&mut self, key: &str) {
@@ -157,14 +157,14 @@ impl Browser {
         if key.len() == 1 {
             event["text"] = key.into();
         }
-        self.call("Input.dispatchKeyEvent", event.clone());
+        self.call("Input.dispatchKeyEvent", &event);
         event["type"] = "keyUp".into();
-        self.call("Input.dispatchKeyEvent", event);
+        self.call("Input.dispatchKeyEvent", &event);
     }
 
     /// What the window shows; kept as `target/report-page/NAME.png`, for a person to look at.
     pub(crate) fn screenshot(&mut self, name: &str) -> image::RgbaImage {
-        let answer = self.call("Page.captureScreenshot", json!({"format": "png"}));
+        let answer = self.call("Page.captureScreenshot", &json!({"format": "png"}));
         let bytes = STANDARD.decode(answer["data"].as_str().unwrap()).unwrap();
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/report-page");
         std::fs::create_dir_all(&folder).unwrap();

@@ -204,11 +204,17 @@ fn repetitions_are_the_same_bit_by_bit_and_so_are_runs() {
         let metric = &case["metrics"][0];
         assert_eq!((&metric["name"], &metric["value"]), (&"repeat.pixels".into(), &0.0.into()), "{case}");
     }
-    let (one, four) = (fixture.run("test", &[]).expect(0), fixture.run("test", &["-j", "4"]).expect(0));
-    for ran in [&one, &four] {
+    let assert_same = |ran: &Ran| {
         for case in ran.report["cases"].as_array().unwrap() {
             assert!(case["paths"]["actual"].is_null(), "a bit differs: {case}");
         }
+    };
+    assert_same(&fixture.run("test", &["-j", "4"]).expect(0));
+    // What cases share makes no difference: with the others or alone.
+    fixture.suite(&format!("{CASE}matrix = {{ env = ['neutral', 'white'], quality = ['split-sum', 'standard'] }}\n"));
+    fixture.bless();
+    for alone in ["*env=neutral,quality=standard", "*env=white,quality=split-sum", "*env=white,quality=standard"] {
+        assert_same(&fixture.run("test", &["--filter", alone]).expect(0));
     }
 }
 

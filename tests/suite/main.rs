@@ -29,6 +29,7 @@ mod paths;
 mod report_fixture;
 mod report_page;
 mod shaders;
+mod sharding;
 mod stability;
 mod support;
 mod terms;

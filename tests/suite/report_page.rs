@@ -180,7 +180,7 @@ fn filters(browser: &mut Browser) {
     browser.click(".filters input[value=pass]");
     assert_eq!(browser.value(seen), 4);
     browser.click(".filters input[type=search]");
-    browser.call("Input.insertText", json!({"text": "case-2"}));
+    browser.call("Input.insertText", &json!({"text": "case-2"}));
     assert_eq!(browser.value(seen), 1);
 }
 

@@ -50,7 +50,7 @@ mod tests {
         let mut report = example();
         report.cases.retain(|case| case.status == Status::Fail);
         let expected = "::error file=suite.toml,line=7,title=fail%3A helmet/quality=Fail::\
-                        flip.mean is 0.020000, not <= 0.004 (suite.toml:3, [defaults])\
+                        flip.mean is 0.020000, not <= 0.004 (suite.toml:3)\
                         %0Ato accept: specula accept suite.toml helmet\n";
         assert_eq!(github(&report), expected);
     }

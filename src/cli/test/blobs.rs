@@ -43,8 +43,8 @@ impl Role {
     pub(super) fn path(self, case: &CaseReport) -> Option<&Path> {
         let paths = &case.paths;
         match self {
-            // Of a new case this is where the golden will be.
-            Self::Golden if case.status == Status::New => None,
+            // Of a new case this is where the golden will be; that of a case in error may be the error.
+            Self::Golden if matches!(case.status, Status::New | Status::Error) => None,
             Self::Golden => paths.golden.as_deref(),
             Self::Actual => paths.actual.as_deref(),
             Self::Difference => paths.difference.as_deref(),

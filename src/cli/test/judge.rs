@@ -111,10 +111,10 @@ impl Trial<'_> {
         let class = &self.judge.adapter.class;
         let path = self.judge.suite.golden(&self.case.id, class);
         self.report.paths.golden = Some(path.clone());
-        let flaw = self.drawn.fault.clone().or_else(|| golden::blank(&self.drawn.rgba));
+        let flaw = || self.drawn.fault.clone().or_else(|| golden::blank(&self.drawn.rgba));
         let Some((bytes, golden)) = read_golden(&path)? else {
             self.report.status = Status::New;
-            return self.propose(&path, flaw);
+            return self.propose(&path, flaw());
         };
         if let Some(problem) = golden::blank(&golden.rgba) {
             return Err(CliError::Usage(format!("{}: is no golden: {problem}; remove it", path.display())));
@@ -134,8 +134,9 @@ impl Trial<'_> {
         }
         self.report.golden_provenance = golden.provenance;
         self.fail_by_metrics();
-        // A flaw that the golden has too was there when people looked at it.
-        if flaw.is_some() && !is_equal {
+        // What is the golden was asked when it became that.
+        let flaw = if is_equal { None } else { flaw() };
+        if flaw.is_some() {
             self.fail(None);
         }
         let has_failed = self.report.status == Status::Fail;

@@ -92,7 +92,7 @@ mod tests {
             panic!("{:?}", failed.status)
         };
         assert_eq!(ty.as_deref(), Some("fail"));
-        let sentence = "flip.mean is 0.020000, not <= 0.004 (suite.toml:3, [defaults])";
+        let sentence = "flip.mean is 0.020000, not <= 0.004 (suite.toml:3)";
         assert_eq!((message.as_deref(), description.as_deref()), (Some(sentence), Some(sentence)));
         let out = failed.system_out.as_ref().unwrap().as_str();
         assert_eq!(out, "[[ATTACHMENT|out/a.png]]\nto accept: specula accept suite.toml helmet");

@@ -39,6 +39,10 @@ pub(in crate::cli) fn run(args: &MergeArgs) -> Result<(), CliError> {
     let read = |folder: &PathBuf| Ok(Part { report: SuiteReport::read(folder)?, folder: folder.clone() });
     let parts = args.parts.iter().map(read).collect::<Result<Vec<_>, CliError>>()?;
     check(&parts).map_err(CliError::Usage)?;
+    // Unless that is one of the parts.
+    if !args.parts.contains(&args.out) {
+        publish::forget(&args.out)?;
+    }
     let merged = merge(parts, &args.out)?;
     publish::publish(&merged, &args.out, &args.publish)?;
     let text = if args.json { merged.json()? } else { text::text(&merged, &args.out) };

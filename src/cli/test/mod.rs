@@ -107,7 +107,7 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
         suite.check_may_bless(&adapter.class)?;
     }
     let out = args.out.clone().unwrap_or_else(|| suite.default_out());
-    report::forget(&out)?;
+    publish::forget(&out)?;
     let progress = StderrProgress::new(args.quiet);
     let judge = Judge { suite: &suite, adapter: &adapter, out: &out, update: args.update, times: args.repeat };
     let plan = Plan { cases: &cases, judge: &judge, jobs: args.jobs.into(), cache: &args.cache };

@@ -255,10 +255,11 @@ mod tests {
     fn slices_are_neighbours_and_hashes_stay() {
         assert_eq!(parts("slice", 3, &[None; 8]), [vec![0, 1], vec![2, 3, 4], vec![5, 6, 7]]);
         // A further case leaves the others where they are.
-        let (few, more) = (parts("hash", 3, &[None; 60]), parts("hash", 3, &[None; 61]));
+        let (few, more) = (parts("hash", 3, &[None; 3000]), parts("hash", 3, &[None; 3001]));
         for (few, more) in few.iter().zip(&more) {
-            assert!(more.starts_with(few), "{few:?} {more:?}");
-            assert!(few.len() > 10, "{few:?}");
+            assert!(more.starts_with(few));
+            // A thousand, but for what chance does: a standard deviation of 26.
+            assert!(few.len().abs_diff(1000) < 100, "{}", few.len());
         }
     }
 

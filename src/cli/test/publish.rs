@@ -1,6 +1,6 @@
 //! The files of a finished run: the page for people, JUnit XML for CI systems, JSON for all else.
 
-use super::report::SuiteReport;
+use super::report::{self, SuiteReport};
 use super::{annotations, golden, junit, page};
 use crate::cli::error::CliError;
 use crate::cli::output;
@@ -23,7 +23,7 @@ pub(super) struct PublishArgs {
 /// Writes all files of the report into `folder`, where its blobs are too; `report.json` comes last, when all is there.
 ///
 /// # Errors
-/// When a picture cannot be read or a file cannot be written.
+/// When a file cannot be written.
 pub(super) fn publish(report: &SuiteReport, folder: &Path, args: &PublishArgs) -> Result<(), CliError> {
     let limit = u64::from(args.page_limit) << 20;
     golden::write_in_folders(&folder.join(PAGE), page::html(report, folder, limit)?.as_bytes())?;
@@ -31,6 +31,23 @@ pub(super) fn publish(report: &SuiteReport, folder: &Path, args: &PublishArgs) -
     report.write(folder)?;
     if args.github {
         output::write(Path::new("-"), annotations::github(report).as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Takes away what an earlier run has reported: if this one is interrupted, nobody shall take that for its report.
+///
+/// # Errors
+/// When it is there and stays.
+pub(super) fn forget(folder: &Path) -> Result<(), CliError> {
+    for name in [report::FILE_NAME, PAGE, JUNIT] {
+        let path = folder.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(CliError::Write { path, reason: error.to_string() });
+            }
+            _ => {}
+        }
     }
     Ok(())
 }

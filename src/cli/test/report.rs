@@ -231,20 +231,6 @@ impl SuiteReport {
     }
 }
 
-/// Takes away what an earlier run has reported: if this one is interrupted, nobody shall take that for its report.
-///
-/// # Errors
-/// When it is there and stays.
-pub(super) fn forget(folder: &Path) -> Result<(), CliError> {
-    let path = folder.join(FILE_NAME);
-    match std::fs::remove_file(&path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            Err(CliError::Write { path, reason: error.to_string() })
-        }
-        _ => Ok(()),
-    }
-}
-
 #[cfg(test)]
 pub(in crate::cli) mod tests {
     use super::*;

@@ -139,8 +139,15 @@ impl<'a> Stage<'a> {
             return Ok(());
         }
         // Its memory before that of the next.
-        self.subject = None;
-        let (scene, _) = args.load(self.progress, &Stopwatch::default())?;
+        let scene = match self.subject.take() {
+            Some((loaded, subject)) if loaded.has_model_of(args) => {
+                Scene { environment: args.load_environment()?, ..subject.scene }
+            }
+            before => {
+                drop(before);
+                args.load(self.progress, &Stopwatch::default())?.0
+            }
+        };
         let hash = self.hash(args)?;
         self.subject = Some((args, Subject { scene, hash, uploaded: Vec::new() }));
         Ok(())

@@ -23,6 +23,8 @@ fn assert_whole(fixture: &Fixture) {
                 let read: Result<serde_json::Value, _> = serde_json::from_slice(&bytes);
                 drop(read.unwrap_or_else(|error| panic!("{}: {error}", path.display())));
             }
+            Some("html") => assert!(bytes.ends_with(b"</html>"), "{}", path.display()),
+            Some("xml") => assert!(bytes.trim_ascii_end().ends_with(b"</testsuites>"), "{}", path.display()),
             other => assert_eq!(other, Some("tmp"), "{}", path.display()),
         }
     }

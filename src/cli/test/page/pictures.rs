@@ -2,7 +2,6 @@
 
 use super::super::blobs::{self, Role};
 use super::super::report::CaseReport;
-use crate::cli::error::CliError;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::Path;
@@ -47,21 +46,24 @@ impl<'a> Budget<'a> {
         Self { folder, left_bytes: limit_bytes }
     }
 
-    /// All pictures of the case, or none.
-    pub(super) fn take(&mut self, case: &CaseReport) -> Result<Shown, CliError> {
-        let mut files = Vec::new();
+    /// All pictures of the case that can be read, or none.
+    pub(super) fn take(&mut self, case: &CaseReport) -> Shown {
+        let (mut files, mut remarks) = (Vec::new(), Vec::new());
         for role in Role::ALL {
-            files.extend(blobs::read(self.folder, case, role)?.map(|bytes| (role, bytes)));
+            match blobs::read(self.folder, case, role) {
+                Ok(bytes) => files.extend(bytes.map(|bytes| (role, bytes))),
+                // A report without a picture is better than none.
+                Err(error) => remarks.push(error.to_string()),
+            }
         }
         let bytes: u64 = files.iter().map(|(_, bytes)| encoded_length(bytes)).sum();
-        let mut remarks = Vec::new();
         if bytes > self.left_bytes {
             // The next ones may be smaller, but better than this one they are not.
             self.left_bytes = 0;
             let places = files.iter().filter_map(|(role, _)| place(self.folder, case, *role));
             let places = places.collect::<Vec<_>>().join(", ");
             remarks.push(format!("The page is full (--page-limit); the pictures are {places}"));
-            return Ok(Shown { pictures: Vec::new(), remarks });
+            return Shown { pictures: Vec::new(), remarks };
         }
         self.left_bytes -= bytes;
         let mut pictures = Vec::new();
@@ -78,7 +80,7 @@ impl<'a> Budget<'a> {
         if pictures.iter().any(|picture| picture.role == "golden") && case.paths.actual.is_none() {
             remarks.extend(case.provenance.is_some().then(|| "This run drew the golden, bit for bit.".into()));
         }
-        Ok(Shown { pictures, remarks })
+        Shown { pictures, remarks }
     }
 }
 
