@@ -32,5 +32,9 @@ pub mod shader;
 pub use {glam, wgpu};
 
 #[cfg(doctest)]
+#[doc = include_str!("../docs/embedding.md")]
+struct EmbeddingExamples;
+
+#[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;

@@ -5,7 +5,7 @@ use super::slots::Slots;
 use super::{EmbedError, ModelId, check};
 use crate::gpu::Identity;
 use crate::gpu_scene::GpuScene;
-use crate::renderer::Renderer;
+use crate::renderer::{RenderError, Renderer};
 use crate::scene::{Environment, EnvironmentMaps, Light, Material, Scene};
 use glam::DMat4;
 use std::hash::{BuildHasher, RandomState};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Changes are collected, and [`Self::update`] brings them to the GPU: transforms, the numbers of materials and lights, and
 /// the environment's rotation and intensity are written into the buffers that are there. Models that come or go, and
 /// changes that need other shaders (a material that gets a texture or becomes transparent, a transform that begins to
-/// mirror, lights that are more or fewer than fit), upload the scene anew.
+/// mirror, the first light that shines), upload the scene anew; its textures only where models came or went.
 #[derive(Debug)]
 pub struct LiveScene {
     /// Told from others by chance: a handle of another scene is one in 2^64.
@@ -40,7 +40,12 @@ struct Uploaded {
 /// What has changed since the last update.
 #[derive(Debug, Default)]
 struct Pending {
+    /// More than can be written.
     all: bool,
+    /// Models have come or gone, and their images with them.
+    images: bool,
+    /// The environment is of another image.
+    other_light: bool,
     moved: bool,
     lights: bool,
     environment: bool,
@@ -76,7 +81,7 @@ impl LiveScene {
         check::check(asset)?;
         self.settle_materials();
         let (index, generation) = self.models.insert(merge::append(&mut self.scene, asset));
-        self.pending.all = true;
+        (self.pending.all, self.pending.images) = (true, true);
         Ok(ModelId { scene: self.id, index, generation })
     }
 
@@ -90,7 +95,7 @@ impl LiveScene {
         let removed = self.models.remove((id.index, id.generation)).ok_or(EmbedError::StaleHandle)?;
         merge::remove(&mut self.scene, &removed);
         self.models.values_mut().for_each(|model| *model = merge::moved_up(model, &removed));
-        self.pending.all = true;
+        (self.pending.all, self.pending.images) = (true, true);
         Ok(())
     }
 
@@ -156,7 +161,7 @@ impl LiveScene {
     /// Sets what the scene stands in: an environment and the maps that were baked from its image; `None` is darkness.
     pub fn set_environment(&mut self, environment: Option<(Environment, Arc<EnvironmentMaps>)>) {
         (self.scene.environment, self.maps) = environment.unzip();
-        self.pending.all = true;
+        (self.pending.all, self.pending.other_light) = (true, true);
     }
 
     /// Turns the environment about +Y, rad, and sets the factor of its radiance. Does nothing in the dark.
@@ -179,6 +184,11 @@ impl LiveScene {
         &self.scene
     }
 
+    /// What the last update has brought to the GPU, for `FrameState::prepared`.
+    pub fn uploaded(&self) -> Option<&GpuScene> {
+        self.uploaded.as_ref().map(|uploaded| &uploaded.scene)
+    }
+
     /// How often the whole scene was uploaded.
     pub fn uploads(&self) -> u64 {
         self.uploads
@@ -195,21 +205,42 @@ impl LiveScene {
         renderer: &Renderer,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
     ) -> Result<&mut GpuScene, EmbedError> {
-        let uploaded =
-            self.uploaded.take().filter(|uploaded| uploaded.renderer == renderer.identity && !self.pending.all);
-        let uploaded = uploaded.and_then(|mut uploaded| self.write(queue, &mut uploaded.scene).then_some(uploaded));
-        let uploaded = match uploaded {
-            Some(uploaded) => uploaded,
-            None => {
-                self.pending.all = true;
+        let mut previous = self.uploaded.take().filter(|uploaded| uploaded.renderer == renderer.identity);
+        let is_written = match &mut previous {
+            Some(uploaded) if !self.pending.all => self.write(queue, &mut uploaded.scene),
+            _ => false,
+        };
+        let uploaded = match previous {
+            Some(uploaded) if is_written => uploaded,
+            previous => {
                 self.settle_materials();
-                let scene = renderer.upload(device, queue, &self.scene, self.maps.as_deref())?;
+                self.pending.all = true;
+                let scene = self.upload(renderer, (device, queue), previous.map(|previous| previous.scene));
+                // What was there has been used up, textures included.
+                self.pending.images |= scene.is_err();
+                let scene = scene?;
                 self.uploads += 1;
                 Uploaded { renderer: renderer.identity.clone(), scene }
             }
         };
         self.pending = Pending::default();
         Ok(&mut self.uploaded.insert(uploaded).scene)
+    }
+
+    /// Uploads everything but the textures that `previous` has.
+    fn upload(
+        &self,
+        renderer: &Renderer,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        previous: Option<GpuScene>,
+    ) -> Result<GpuScene, RenderError> {
+        let maps = self.maps.as_deref();
+        match previous.filter(|_| !self.pending.images) {
+            Some(previous) => {
+                renderer.upload_again(device, queue, &self.scene, (maps, !self.pending.other_light), previous)
+            }
+            None => renderer.upload(device, queue, &self.scene, maps),
+        }
     }
 
     /// Writes what has changed into the buffers that are there. False where something does not fit.

@@ -1,5 +1,7 @@
 //! One test binary for all that needs the whole crate: each test binary links wgpu.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+// The examples of embedding share a host.
+#![allow(clippy::duplicate_mod)]
 
 mod architecture;
 mod bench;

@@ -210,6 +210,25 @@ fn models_come_and_go_and_handles_tell_them_apart() {
 }
 
 #[test]
+fn a_material_changes_its_textures() {
+    let (mut stage, mut scene) = (stage(), LiveScene::new());
+    scene.insert(&model()).unwrap();
+    let id = scene.insert(&textured(0.0, [0, 255, 0, 255])).unwrap();
+    scene.set_transform(id, DMat4::from_scale(DVec3::splat(3.0))).unwrap();
+    let green = stage.draw(&mut scene);
+    scene.set_material(id, 0, Material { metallic: 0.0, ..Default::default() }).unwrap();
+    let white = stage.expect(&mut scene, 2, &green);
+    let textured = textured(0.0, [0; 4]).materials[0].clone();
+    scene.set_material(id, 0, textured.clone()).unwrap();
+    assert!(stage.expect(&mut scene, 3, &white) == green);
+    let mut both = textured.clone();
+    both.emissive_nits = glam::Vec3::splat(0.3);
+    both.set_texture(TextureSlot::Emissive, textured.texture(TextureSlot::BaseColor).copied());
+    scene.set_material(id, 0, both).unwrap();
+    stage.expect(&mut scene, 4, &green);
+}
+
+#[test]
 fn stale_handles_and_bad_numbers_are_errors_and_change_nothing() {
     let (mut stage, mut scene, mut other) = (stage(), LiveScene::new(), LiveScene::new());
     let [gone, id] = [scene.insert(&model()).unwrap(), scene.insert(&model()).unwrap()];

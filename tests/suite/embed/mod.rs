@@ -3,7 +3,6 @@
 mod api;
 mod edits;
 mod examples;
-#[allow(clippy::duplicate_mod, reason = "each example has its own")]
 #[path = "../../../examples/host/mod.rs"]
 mod host;
 mod lifetime;
