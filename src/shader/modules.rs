@@ -36,11 +36,11 @@ pub fn forward_module_into(
 /// What turns radiance into what the target holds; `uniform` has the exposure.
 fn target_slots(light: TargetLight, uniform: &str) -> Slots {
     match light {
-        TargetLight::Radiance => Slots::from([("target", Slot::File("color/target_radiance.wgsl"))]),
+        TargetLight::Radiance => Slots::from([("target", Slot::File("pass/target_radiance.wgsl"))]),
         TargetLight::Display(features) => {
             let exposure = format!("fn exposure() -> f32 {{\n    return {uniform}.exposure;\n}}\n");
             let mut slots = display_slots(features);
-            slots.insert("target", Slot::File("color/target_display.wgsl"));
+            slots.insert("target", Slot::File("pass/target_display.wgsl"));
             slots.insert("exposure", Slot::Text(exposure));
             slots
         }
