@@ -2,6 +2,7 @@
 //! several, where it is nearer to the truth.
 
 use crate::support::{add_light, front_view, gpu, import, leave_pictures, relative_rms, samples, sphere_scene, trace};
+use crate::tiers::two_suns;
 use glam::{DMat4, DVec3, Vec3, Vec4};
 use specula::bake::environment::{self, BakeOptions};
 use specula::capture::{CaptureOptions, CaptureTarget, Wanted, submit};
@@ -140,6 +141,20 @@ fn a_model_with_textures_looks_alike_on_both_paths() {
 
 /// Mipmap levels are chosen pixel by pixel on one path and for four pixels together on the other: measured 2.9e-4.
 const HELMET_DIFFERENCE: f64 = 6e-4;
+
+/// Mesa 22.3 compiles uniforms into a shader that decide in it, and crashed on a sun that did.
+#[test]
+fn suns_are_drawn_by_both_paths() {
+    let gpu = gpu(Precision::Float);
+    let plain = Material { metallic: 0.0, perceptual_roughness: 0.6, ..Default::default() };
+    let scene = Scene { environment: Some(Environment::new(two_suns())), ..sphere_scene(plain) };
+    for (samples, precision) in [(1, Precision::Float), (4, Precision::Float), (4, Precision::Half)] {
+        let [forward, deferred] = both(&gpu, &scene, &front_view(SIDE_PX), CaptureOptions { samples, precision });
+        let (rms, _) = difference(&deferred, &forward);
+        println!("{samples} samples: {rms:.2e}");
+        assert!(rms < if samples == 1 { 1e-4 } else { 2e-2 }, "{samples} samples: {rms}");
+    }
+}
 
 #[test]
 fn the_deferred_path_is_taken_only_where_it_can_be_and_pays() {
