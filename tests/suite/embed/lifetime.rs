@@ -131,7 +131,9 @@ fn scenes_that_come_and_go_leave_nothing_on_the_device() {
         }
     }
     println!("{sizes:?}");
-    assert!(sizes.iter().all(|size| *size == sizes[0]), "{sizes:?}");
+    // A few bytes come and go with what the device frees when; a buffer left every round would be 16 bytes each at least.
+    let least = sizes.iter().flatten().min().copied().unwrap();
+    assert!(sizes.iter().all(|size| size.is_some_and(|size| size < least + 20 * 16)), "{sizes:?}");
 }
 
 #[test]
