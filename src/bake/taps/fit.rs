@@ -78,11 +78,10 @@ impl<'a> Lobes<'a> {
 
     /// Whichever tap is split, the best of what comes of it.
     fn with_one_more(&self, grid: &Grid) -> Grid {
-        let (middle, fine) = GRIDS.split_at(3);
-        let (rows, columns, steps) = middle[2];
+        let (rows, columns, steps) = GRIDS[2];
         let split = |tap: usize| self.descended(&grid.resampled(rows, columns).split(tap), steps);
         let best = (1..grid.taps()).fold(split(0), |best, tap| self.better(best, split(tap)));
-        self.refined(best, fine)
+        self.refined(best, &GRIDS[3..])
     }
 
     fn better(&self, a: Grid, b: Grid) -> Grid {
