@@ -1,12 +1,7 @@
 #import "lighting/sun.wgsl"
+#import <each_sun>
 
 // The suns, unless the sky is asked for without them.
 fn sun_radiance(lobes: Lobes) -> vec3f {
-    var radiance = vec3f(0.0);
-    for (var i = 0u; i < environment.sun_count; i++) {
-        if frame.channel != CHANNEL_SKY {
-            radiance += radiance_of_sun(lobes, i);
-        }
-    }
-    return radiance;
+    return select(radiance_of_suns(lobes), vec3f(0.0), frame.channel == CHANNEL_SKY);
 }

@@ -11,7 +11,7 @@ const FINEST_PERCEPTUAL_ROUGHNESS: f32 = 0.08838834764831845;
 const LAST_LEVEL: f32 = 8.0;
 
 fn level_of(perceptual_roughness: f32) -> f32 {
-    let x = perceptual_roughness / FINEST_PERCEPTUAL_ROUGHNESS;
+    let x = perceptual_roughness * (1.0 / FINEST_PERCEPTUAL_ROUGHNESS);
     let below = x * x * x * (6.0 + x * (3.0 * x - 8.0));
     return select(LAST_LEVEL + 2.0 * log2(perceptual_roughness), below, x < 1.0);
 }

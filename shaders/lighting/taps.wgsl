@@ -42,11 +42,11 @@ fn plane_of_incidence(lobes: Lobes, to_environment: mat3x3f) -> Plane {
     let across = (n * (twice * lobes.NoV - 1.0) - v * lobes.NoV) * alpha;
     let level = level_of(lobes.perceptual_roughness);
     let texel = vec2f(sqrt(lobes.NoV), level / LAST_LEVEL) * (vec2f(TAPS_COLUMNS, TAPS_ROWS) - 1.0) + 0.5;
-    return Plane(n * twice - v, across, level, n, texel / vec2f(TAPS_COLUMNS, TAPS_ROWS * TAPS_TILES));
+    return Plane(n * twice - v, across, level, n, texel * (1.0 / vec2f(TAPS_COLUMNS, TAPS_ROWS * TAPS_TILES)));
 }
 
 fn taps_texel(tile: f32, plane: Plane) -> vec4f {
-    return textureSampleLevel(taps_table, clamp_sampler, plane.taps_uv + vec2f(0.0, tile / TAPS_TILES), 0.0);
+    return textureSampleLevel(taps_table, clamp_sampler, plane.taps_uv + vec2f(0.0, tile * (1.0 / TAPS_TILES)), 0.0);
 }
 
 // Two lookups of neighbouring levels, each at its own place: place, level and spread as the table has them. The mirror
@@ -72,6 +72,6 @@ fn parts(stored: vec2f) -> vec2f {
 fn share_of_metal(lobes: Lobes) -> vec3f {
     let metal = lobes.split_sum.x + lobes.split_sum.y;
     let dielectric = 0.04 * lobes.split_sum.x + lobes.split_sum.y;
-    let t = saturate((lobes.single_scatter - dielectric) / max(metal - dielectric, 1e-5));
+    let t = saturate((lobes.single_scatter - dielectric) * (1.0 / max(metal - dielectric, 1e-5)));
     return saturate(t * metal / max(lobes.single_scatter, vec3f(1e-5)));
 }

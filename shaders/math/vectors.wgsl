@@ -6,7 +6,7 @@ const LENGTH_MAX: f32 = 1e37;
 // first: the square of a length leaves f32 below 1e-19 and above 1e19.
 fn normalize_or(v: vec3f, fallback: vec3f) -> vec3f {
     let largest = max(abs(v.x), max(abs(v.y), abs(v.z)));
-    let scaled = v / max(largest, LENGTH_MIN);
+    let scaled = v * (1.0 / max(largest, LENGTH_MIN));
     let unit = scaled * inverseSqrt(max(dot(scaled, scaled), LENGTH_MIN));
     return select(fallback, unit, largest > LENGTH_MIN && largest < LENGTH_MAX);
 }

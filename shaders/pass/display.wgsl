@@ -16,7 +16,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = textureLoad(scene_radiance, vec2i(position.xy), 0);
-    let straight = texel.xyz / max(texel.w, 1e-4);
+    let straight = texel.xyz * (1.0 / max(texel.w, 1e-4));
     let mapped = tone_map(straight * display.exposure);
     let coverage = saturate(texel.w);
     let light = mix(mapped, mix(display.background.xyz, mapped, coverage), display.background.w);

@@ -6,8 +6,8 @@
 @group(1) @binding(0) var<uniform> pulled: PulledDraw;
 
 @vertex
-fn vertex(@builtin(instance_index) instance: u32, @location(0) position: vec3f) -> @builtin(position) @invariant vec4f {
-    let position_in_world = vec4f(position, 1.0) * instances[visible_instances[instance]].world_from_object;
+fn vertex(@location(0) position: vec3f) -> @builtin(position) @invariant vec4f {
+    let position_in_world = vec4f(position, 1.0) * pulled.world_from_object;
     return frame.clip_from_world * vec4f(position_in_world, 1.0);
 }
 

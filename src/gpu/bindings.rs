@@ -80,7 +80,7 @@ pub fn background_entries() -> Vec<BindGroupLayoutEntry> {
 
 /// Group 1 of the visibility pass: the draw.
 pub fn visibility_entries() -> Vec<BindGroupLayoutEntry> {
-    vec![buffer(0, ShaderStages::FRAGMENT, BufferBindingType::Uniform)]
+    vec![buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform)]
 }
 
 /// What the visibility pass has left, alone.

@@ -114,7 +114,6 @@ fn uniform(
     let (width, height) = (maps.atlas_width as f32, maps.atlas_height as f32);
     let (suns, sun_illuminance) = suns(maps, environment);
     EnvironmentUniform {
-        sun_count: maps.suns.len().min(MAX_SUNS) as u32,
         suns,
         sun_illuminance,
         irradiance_over_pi: maps.irradiance_over_pi.map(|c| (c * intensity).as_vec3().extend(0.0).to_array()),

@@ -1,5 +1,6 @@
 //! A [`Scene`] on the GPU: buffers, textures and bind groups, made once.
 
+mod corners;
 mod edit;
 mod environment;
 mod geometry;
@@ -14,7 +15,7 @@ mod textures;
 use crate::frame::{Drawables, PlacedInstance, is_deferrable};
 use crate::gpu::bindings::{self, frame_layout};
 use crate::gpu::{Identity, Staging};
-use crate::scene::{EnvironmentMaps, Scene};
+use crate::scene::{EnvironmentMaps, MAX_SUNS, Scene};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
@@ -136,7 +137,7 @@ impl GpuScene {
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
         let mut features = SceneFeatures::of(scene);
-        features.suns = features.environment && maps.is_some_and(|maps| !maps.suns.is_empty());
+        features.suns = maps.filter(|_| features.environment).map_or(0, |maps| maps.suns.len().min(MAX_SUNS) as u8);
         let drawables = Drawables::new(scene, features);
         let origin_in_world = drawables.origin_in_world;
         let mut staging = Staging::new(device, queue);

@@ -1,6 +1,8 @@
 //! Geometry as textures, for a fragment shader that fetches the corners of its triangle by itself: a texel is four
-//! numbers in one fetch, where a buffer takes one for each.
+//! numbers in one fetch, where a buffer takes one for each. Every draw has one place, so vertices are brought there once
+//! and not at every corner of every pixel.
 
+use super::corners::Corners;
 use super::geometry::attribute_data;
 use super::gpu_instance;
 use crate::frame::{Drawable, Drawables};
@@ -8,7 +10,7 @@ use crate::gpu::formats;
 use crate::scene::{Primitive, Scene};
 use crate::shader::types::Instance;
 use crate::shader::{PULLED_ROW_TEXELS, VertexFeatures, texels_per_vertex};
-use std::collections::HashMap;
+use glam::{Mat3, Vec3, Vec4};
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 /// Vertices, attributes side by side, and triangles.
@@ -18,15 +20,14 @@ pub struct PulledGeometry {
     pub(crate) triangles: wgpu::Texture,
     /// By drawable.
     pub(crate) places: Vec<PulledPlace>,
-    /// By drawable, its only one.
-    pub(crate) instances: Vec<Instance>,
 }
 
-/// Where a primitive begins, in texels.
+/// Where a drawable begins, in texels, and what has placed it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PulledPlace {
     pub(crate) vertices: u32,
     pub(crate) triangles: u32,
+    pub(crate) instance: Instance,
 }
 
 impl PulledGeometry {
@@ -38,23 +39,19 @@ impl PulledGeometry {
         drawables: &Drawables,
     ) -> Option<Self> {
         let (mut vertices, mut triangles) = (Vec::<[f32; 4]>::new(), Vec::<[u32; 4]>::new());
-        let mut uploaded = HashMap::new();
         let mut places = Vec::new();
         for drawable in &drawables.draws {
-            let place = *uploaded.entry((drawable.mesh, drawable.primitive)).or_insert_with(|| {
-                let place = PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32 };
-                let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
-                triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
-                append_vertices(&mut vertices, primitive, &drawable.vertex_features);
-                place
-            });
-            places.push(place);
+            let instance = instance(drawables, drawable);
+            places.push(PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32, instance });
+            let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
+            let corners = Corners::of(primitive, &drawable.vertex_features);
+            triangles.extend(corners.triangles(primitive));
+            append_vertices(&mut vertices, primitive, &corners.order, &drawable.vertex_features, &instance);
         }
         Some(Self {
             vertices: texture(device, queue, formats::PULLED_VERTICES, vertices)?,
             triangles: texture(device, queue, formats::PULLED_TRIANGLES, triangles)?,
             places,
-            instances: drawables.draws.iter().map(|drawable| instance(drawables, drawable)).collect(),
         })
     }
 
@@ -69,17 +66,48 @@ fn instance(drawables: &Drawables, drawable: &Drawable) -> Instance {
     gpu_instance(&drawables.instances[placement as usize], drawables.origin_in_world)
 }
 
-/// The attributes of each vertex side by side, in whole texels.
-fn append_vertices(texels: &mut Vec<[f32; 4]>, primitive: &Primitive, features: &VertexFeatures) {
+/// The attributes of each vertex side by side, in whole texels, as the vertex shader of the forward pass hands them on.
+fn append_vertices(
+    texels: &mut Vec<[f32; 4]>,
+    primitive: &Primitive,
+    order: &[u32],
+    features: &VertexFeatures,
+    instance: &Instance,
+) {
     let data = attribute_data(primitive, features);
     let size = 4 * texels_per_vertex(features) as usize;
     let mut floats = Vec::with_capacity(size);
-    for i in 0..primitive.positions.len() {
-        data.iter().for_each(|(attribute, count)| floats.extend_from_slice(&attribute[i * count..][..*count]));
+    for vertex in order.iter().map(|vertex| *vertex as usize) {
+        data.iter().for_each(|(attribute, count)| floats.extend_from_slice(&attribute[vertex * count..][..*count]));
         floats.resize(size, 0.0);
+        place(&mut floats, features, instance);
         texels.extend_from_slice(bytemuck::cast_slice(&floats));
         floats.clear();
     }
+}
+
+/// Brings position, normal and tangent, which come first, into the world.
+fn place(vertex: &mut [f32], features: &VertexFeatures, instance: &Instance) {
+    let rows = instance.world_from_object.map(Vec4::from_array);
+    let in_world = |at: Vec4| Vec3::from_array(rows.map(|row| row.dot(at)));
+    let position = in_world(Vec3::from_slice(vertex).extend(1.0));
+    position.write_to_slice(vertex);
+    let mut rest = &mut vertex[3..];
+    if features.normal {
+        let columns = instance.normal_from_object.map(|column| Vec4::from_array(column).truncate());
+        let normal = Mat3::from_cols(columns[0], columns[1], columns[2]) * Vec3::from_slice(rest);
+        unit_or_zero(normal).write_to_slice(rest);
+        rest = &mut rest[3..];
+    }
+    if features.tangent {
+        unit_or_zero(in_world(Vec3::from_slice(rest).extend(0.0))).write_to_slice(rest);
+        rest[3] *= instance.handedness;
+    }
+}
+
+/// Of any length, as small or large as float32 goes: hence in float64.
+fn unit_or_zero(v: Vec3) -> Vec3 {
+    v.as_dvec3().normalize_or_zero().as_vec3()
 }
 
 /// Rows of [`PULLED_ROW_TEXELS`] texels of 16 bytes.

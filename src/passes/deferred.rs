@@ -148,16 +148,13 @@ impl DeferredPipelines {
 }
 
 fn pulled_draw(scene: &GpuScene, geometry: &PulledGeometry, drawable: usize, size_px: UVec2) -> PulledDraw {
-    let instance = &geometry.instances[drawable];
     let place = &geometry.places[drawable];
     PulledDraw {
         first_triangle: place.triangles,
         first_vertex: place.vertices,
         number: drawable as u32 + 1,
         front: if scene.drawables.draws[drawable].mirrored { -1.0 } else { 1.0 },
-        world_from_object: instance.world_from_object,
-        normal_from_object: instance.normal_from_object,
-        handedness: instance.handedness,
+        world_from_object: place.instance.world_from_object,
         ndc_step: [2.0 / size_px.x as f32, -2.0 / size_px.y as f32],
         ..Default::default()
     }

@@ -138,12 +138,7 @@ fn of_material(scene: SceneFeatures, material: &Material) -> ForwardFeatures {
 
 /// One bounce, one light: what a lobe is proven by.
 pub(super) fn plain_metal() -> ForwardFeatures {
-    let scene = SceneFeatures {
-        punctual: true,
-        light_list: LightList::All,
-        environment: false,
-        suns: false,
-        fresnel_tail: false,
-    };
+    let scene =
+        SceneFeatures { punctual: true, light_list: LightList::All, environment: false, suns: 0, fresnel_tail: false };
     ForwardFeatures { energy_compensation: false, ..features(scene, Material::default()) }
 }

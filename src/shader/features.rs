@@ -1,8 +1,8 @@
-//! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and never part of it.
+//! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and not part of it, but that of suns.
 
 use crate::scene::{
-    AlphaMode, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureRef, TextureSlot,
-    Topology, UvTransform,
+    AlphaMode, Geometry, MAX_SUNS, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureRef,
+    TextureSlot, Topology, UvTransform,
 };
 use std::fmt;
 
@@ -24,6 +24,9 @@ pub enum Alpha {
     Blend,
 }
 
+/// What names of pipelines say about suns, by their number.
+const SUN_FLAGS: [&str; MAX_SUNS + 1] = ["", "sun", "two_suns", "three_suns", "four_suns"];
+
 /// Where the light comes from, for a whole scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SceneFeatures {
@@ -33,8 +36,9 @@ pub struct SceneFeatures {
     pub environment: bool,
     /// Some metal's Fresnel curve is not Schlick's, so a table of the difference is bound.
     pub fresnel_tail: bool,
-    /// The environment's maps come with suns that they do not hold.
-    pub suns: bool,
+    /// How many suns, [`MAX_SUNS`] at most, come with the environment's maps, which do not hold them. Shaders name each, because software drivers
+    /// take a loop over them at a high price (docs/performance.md, "Two paths from triangles to radiance").
+    pub suns: u8,
 }
 
 /// The fewest lights with a range that are sorted into clusters: of so many, the loop over all takes longer where half of
@@ -80,7 +84,7 @@ impl SceneFeatures {
         let lit = || lights.iter().filter(|light| light.intensity != glam::DVec3::ZERO);
         let with_range = lit().filter(|light| light.finite_range_m().is_some()).count();
         Self {
-            suns: false,
+            suns: 0,
             punctual: lit().next().is_some(),
             light_list: LightList::of(lights.len(), lit().count(), with_range),
             environment: scene.lit_environment().is_some(),
@@ -365,7 +369,7 @@ impl fmt::Display for ForwardFeatures {
             (lit && self.scene.light_list == LightList::ClusteredAndUnbounded, "unbounded"),
             (lit && self.scene.environment, "environment"),
             (lit && !self.energy_compensation, "single_scatter"),
-            (lit && self.scene.suns, "suns"),
+            (lit && self.scene.suns > 0, SUN_FLAGS[usize::from(self.scene.suns).min(MAX_SUNS)]),
             (self.reflection() != Quality::SplitSum, self.quality.name()),
             (self.material.anisotropic, "anisotropic"),
             (self.material.fresnel == FresnelFeature::Lazanyi, "lazanyi"),

@@ -53,15 +53,15 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
         fields("position"),
         fields("position_in_world")
     );
-    text.push_str(&vertex_functions(vertex, "instances[visible_instances[in.instance]]"));
+    text.push_str(&vertex_out(vertex));
+    text.push_str(&vertex_color(vertex));
     text
 }
 
-/// `vertex_out` and `vertex_color`, for whatever declares `VertexIn` and `VertexOut`; `instance` is what places the vertex.
-pub(super) fn vertex_functions(vertex: &VertexFeatures, instance: &str) -> String {
-    let mut text = format!(
-        "fn vertex_out(in: VertexIn) -> VertexOut {{\n\
-         \x20   let instance = {instance};\n\
+fn vertex_out(vertex: &VertexFeatures) -> String {
+    let mut text = String::from(
+        "fn vertex_out(in: VertexIn) -> VertexOut {\n\
+         \x20   let instance = instances[visible_instances[in.instance]];\n\
          \x20   var out: VertexOut;\n\
          \x20   out.position_in_world = vec4f(in.position, 1.0) * instance.world_from_object;\n\
          \x20   out.position_in_clip = frame.clip_from_world * vec4f(out.position_in_world, 1.0);\n",
@@ -77,9 +77,13 @@ pub(super) fn vertex_functions(vertex: &VertexFeatures, instance: &str) -> Strin
         let _ = writeln!(text, "    out.{name} = {value};");
     }
     text.push_str("    return out;\n}\n\n");
-    let color = if vertex.color { "v.color" } else { "vec4f(1.0)" };
-    let _ = writeln!(text, "fn vertex_color(v: VertexOut) -> vec4f {{\n    return {color};\n}}");
     text
+}
+
+/// `vertex_color`, for whatever declares `VertexOut`.
+pub(super) fn vertex_color(vertex: &VertexFeatures) -> String {
+    let color = if vertex.color { "v.color" } else { "vec4f(1.0)" };
+    format!("fn vertex_color(v: VertexOut) -> vec4f {{\n    return {color};\n}}\n")
 }
 
 /// How texels are looked up.

@@ -156,12 +156,13 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
         ),
         (
             "suns",
-            Slot::File(match (scene.suns, channel) {
+            Slot::File(match (scene.suns > 0, channel) {
                 (false, _) => "lighting/suns_none.wgsl",
                 (true, false) => "lighting/suns.wgsl",
                 (true, true) => "channel/suns.wgsl",
             }),
         ),
+        ("each_sun", Slot::Text(each_sun(scene.suns))),
         ("output", choose(*channel, "channel/channel.wgsl", "channel/radiance.wgsl")),
         ("channels", Slot::Text(channels::channels(features))),
         ("radiance_channel", choose(material.shading.is_lit(), "channel/lit.wgsl", "channel/unlit.wgsl")),
@@ -213,6 +214,12 @@ fn shading(shading: Shading, term: Option<Term>) -> &'static str {
         (Shading::Lit | Shading::Disney, Some(_)) => "lighting/lit_term.wgsl",
         (_, Some(_)) => "lighting/black.wgsl",
     }
+}
+
+/// The sum over the suns, without a loop.
+fn each_sun(suns: u8) -> String {
+    let radiances: Vec<String> = (0..suns).map(|i| format!("radiance_of_sun(lobes, {i}u)")).collect();
+    format!("fn radiance_of_suns(lobes: Lobes) -> vec3f {{\n    return {};\n}}\n", radiances.join(" + "))
 }
 
 fn reflection(features: &ForwardFeatures) -> &'static str {

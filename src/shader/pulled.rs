@@ -1,8 +1,8 @@
-//! WGSL for the deferred pass, which fetches vertices by itself: the same `VertexIn` and `VertexOut` as in the forward
-//! pass, read from textures and interpolated here.
+//! WGSL for the deferred pass, which fetches vertices by itself: the same `VertexOut` as in the forward pass, read from
+//! textures that hold it in the world, and interpolated here.
 
 use super::features::VertexFeatures;
-use super::interface::{Attribute, attributes, vertex_functions};
+use super::interface::{Attribute, attributes, vertex_color};
 use std::fmt::Write;
 
 /// Binding of what the visibility pass has left, wherever it is read.
@@ -10,6 +10,9 @@ pub const SEEN_SAMPLES_BINDING: u32 = 3;
 
 /// Width of the textures that vertices and triangles are fetched from, texels.
 pub const PULLED_ROW_TEXELS: u32 = 4096;
+
+/// Corners of triangles are numbers of vertices, times this; to it comes the place among the copies of that vertex.
+pub const CORNER_COPIES: u32 = 16;
 
 /// How many texels of four floats one vertex takes.
 pub fn texels_per_vertex(vertex: &VertexFeatures) -> u32 {
@@ -19,12 +22,10 @@ pub fn texels_per_vertex(vertex: &VertexFeatures) -> u32 {
 /// The `<interface>` slot: as that of the forward pass, and `pulled_vertex` and `interpolated`.
 pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     let attributes = attributes(vertex);
-    let mut text = format!("const PULLED_ROW_TEXELS: u32 = {PULLED_ROW_TEXELS}u;\n\n");
-    text.push_str("struct VertexIn {\n");
-    for Attribute { name, wgsl } in &attributes {
-        let _ = writeln!(text, "    {name}: {wgsl},");
-    }
-    text.push_str("}\n\nstruct VertexOut {\n    position_in_clip: vec4f,\n    position_in_world: vec3f,\n");
+    let mut text = format!(
+        "const PULLED_ROW_TEXELS: u32 = {PULLED_ROW_TEXELS}u;\nconst CORNER_COPIES: u32 = {CORNER_COPIES}u;\n\n"
+    );
+    text.push_str("struct VertexOut {\n    position_in_clip: vec4f,\n    position_in_world: vec3f,\n");
     for Attribute { name, wgsl } in &attributes[1..] {
         let _ = writeln!(text, "    {name}: {wgsl},");
         if is_coordinate(name) {
@@ -32,7 +33,7 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
         }
     }
     text.push_str("}\n\n");
-    text.push_str(&vertex_functions(vertex, "pulled"));
+    text.push_str(&vertex_color(vertex));
     text.push_str(&pulled_vertex(&attributes, texels_per_vertex(vertex)));
     text.push_str(&interpolated(&attributes));
     text
@@ -52,7 +53,7 @@ fn components(attribute: &Attribute) -> u32 {
 }
 
 fn pulled_vertex(attributes: &[Attribute], texels: u32) -> String {
-    let mut text = String::from("\nfn pulled_vertex(index: u32) -> VertexOut {\n    var in: VertexIn;\n");
+    let mut text = String::from("\nfn pulled_vertex(index: u32) -> VertexOut {\n    var v: VertexOut;\n");
     let _ = writeln!(text, "    let first = pulled.first_vertex + index * {texels}u;");
     for texel in 0..texels {
         let _ =
@@ -61,13 +62,16 @@ fn pulled_vertex(attributes: &[Attribute], texels: u32) -> String {
     let mut float = 0;
     for attribute in attributes {
         let Attribute { name, wgsl } = attribute;
+        let field = if float == 0 { "position_in_world" } else { name };
         let floats: Vec<String> = (float..float + components(attribute))
             .map(|k| format!("texel_{}.{}", k / 4, ["x", "y", "z", "w"][k as usize % 4]))
             .collect();
-        let _ = writeln!(text, "    in.{name} = {wgsl}({});", floats.join(", "));
+        let _ = writeln!(text, "    v.{field} = {wgsl}({});", floats.join(", "));
         float += components(attribute);
     }
-    text.push_str("    return vertex_out(in);\n}\n");
+    text.push_str(
+        "    v.position_in_clip = frame.clip_from_world * vec4f(v.position_in_world, 1.0);\n    return v;\n}\n",
+    );
     text
 }
 

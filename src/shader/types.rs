@@ -88,9 +88,9 @@ gpu_struct! {
         environment_from_world: mat3x3f,
         /// Intensity, and the scale that brought the radiance into half-float range.
         radiance_scale: f32,
-        sun_count: u32,
         pad_0: f32,
         pad_1: f32,
+        pad_2: f32,
         /// In the world, with what the disc adds to alpha squared.
         suns: [vec4f; 4],
         /// Lux, times the intensity.
@@ -192,13 +192,12 @@ gpu_struct! {
         number: u32,
         /// 1, or -1 where the transform mirrors: front faces are clockwise then.
         front: f32,
-        /// Of its instance, as `Instance` has them.
+        /// Of its only place, as `Instance` has it.
         world_from_object: mat3x4f,
-        normal_from_object: mat3x3f,
-        handedness: f32,
-        pad_0: f32,
         /// What normalised device coordinates change by to the next pixel, to the right and down.
         ndc_step: vec2f,
+        pad_0: f32,
+        pad_1: f32,
     }
 }
 

@@ -45,7 +45,7 @@ impl Setup {
                 light_list: LightList::Few,
                 environment: true,
                 fresnel_tail: false,
-                suns: false,
+                suns: 0,
             },
             quality: Quality::SplitSum,
             energy_compensation: true,
@@ -276,8 +276,8 @@ const FEATURES: &[Feature] = &[
     added("tiers above the split sum", |s| s.quality = Quality::Standard, &["taps_table", "tap", "share_of_metal"]),
     added(
         "suns",
-        |s| s.light.suns = true,
-        &["suns", "sun_count", "sun_illuminance", "radiance_of_sun", "sun_radiance", "lobes_of_disc", "disc_share"],
+        |s| s.light.suns = 2,
+        &["suns", "sun_illuminance", "radiance_of_sun", "sun_radiance", "lobes_of_disc", "disc_share"],
     ),
     taken(
         "light of any kind",

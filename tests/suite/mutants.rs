@@ -55,7 +55,7 @@ const IN_FUNCTIONS: &[Mutant] = &[
     fault("math/constants.wgsl", "0.318309886183791", "0.31831"),
     fault("math/vectors.wgsl", "inverseSqrt(", "sqrt("),
     fault("math/vectors.wgsl", "LENGTH_MIN: f32 = 1e-30", "LENGTH_MIN: f32 = 1e-15"),
-    fault("math/vectors.wgsl", "v / max(largest, LENGTH_MIN)", "v"),
+    fault("math/vectors.wgsl", "v * (1.0 / max(largest, LENGTH_MIN))", "v"),
     fault("math/vectors.wgsl", "LENGTH_MAX: f32 = 1e37", "LENGTH_MAX: f32 = 1e19"),
     fault("math/half_range.wgsl", "65504.0", "65520.0"),
     fault("math/octahedral.wgsl", "abs(d.zx)", "abs(d.xz)"),

@@ -53,7 +53,7 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
             light_list: LIGHT_LISTS[(slots / 2) as usize % 4],
             environment,
             fresnel_tail: !slots.is_multiple_of(3),
-            suns: environment && slots % 2 == 1,
+            suns: if environment { (slots % 3) as u8 } else { 0 },
         };
         let features = MaterialFeatures::of(material, primitive, &scene, scene_features);
         ForwardFeatures {

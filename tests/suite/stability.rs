@@ -31,7 +31,7 @@ fn nothing_that_is_stored_is_nan_infinite_or_negative() {
 
 /// Guards whose removal the search has to notice: file, guard, what stands there without it.
 const GUARDS: &[(&str, &str, &str)] = &[
-    ("math/vectors.wgsl", "v / max(largest, LENGTH_MIN)", "v"),
+    ("math/vectors.wgsl", "v * (1.0 / max(largest, LENGTH_MIN))", "v"),
     ("math/vectors.wgsl", "largest > LENGTH_MIN && largest < LENGTH_MAX", "true"),
     ("math/half_range.wgsl", "min(radiance, vec3f(HALF_MAX))", "radiance"),
     ("light/attenuation.wgsl", "DISTANCE_SQUARED_MAX)", "distance_squared)"),

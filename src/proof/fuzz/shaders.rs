@@ -20,9 +20,9 @@ pub struct FuzzedShader {
 }
 
 const LIT: SceneFeatures =
-    SceneFeatures { punctual: true, light_list: LightList::All, environment: true, suns: true, fresnel_tail: true };
+    SceneFeatures { punctual: true, light_list: LightList::All, environment: true, suns: 1, fresnel_tail: true };
 const BY_LIGHTS: SceneFeatures =
-    SceneFeatures { punctual: true, light_list: LightList::All, environment: false, suns: false, fresnel_tail: false };
+    SceneFeatures { punctual: true, light_list: LightList::All, environment: false, suns: 0, fresnel_tail: false };
 
 /// All that are searched.
 pub const FUZZED: &[FuzzedShader] = &[
