@@ -45,10 +45,9 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
 
 // What one triangle sends to the viewer at a place of the picture, be that on the triangle or beside it.
 fn shaded(corners: vec3u, place: vec2f) -> vec4f {
-    let vertices = corners / CORNER_COPIES + corners % CORNER_COPIES;
-    let a = pulled_vertex(vertices.x);
-    let b = pulled_vertex(vertices.y);
-    let c = pulled_vertex(vertices.z);
+    let a = pulled_vertex(corners.x);
+    let b = pulled_vertex(corners.y);
+    let c = pulled_vertex(corners.z);
     // The place comes to the origin first: the corners are near, and their products would cancel elsewhere.
     let w = vec3f(a.position_in_clip.w, b.position_in_clip.w, c.position_in_clip.w);
     let ndc = place * pulled.ndc_step + vec2f(-1.0, 1.0);
@@ -70,11 +69,10 @@ fn corners_of(triangle: u32) -> vec3u {
     return textureLoad(pulled_triangles, pulled_texel(pulled.first_triangle + triangle), 0).xyz;
 }
 
-// Whether two triangles have a corner in common. Where a surface has an edge its normals differ, and so do the corners: it
-// is smooth between triangles that meet, and shading it once for both is what the pixel shows.
+// Whether two triangles have a vertex in common. Vertices are split where a surface has an edge, so it is smooth between
+// them, and shading it once for both is what the pixel shows.
 fn meet(a: vec3u, b: vec3u) -> bool {
-    return any((a ^ b) < vec3u(CORNER_COPIES)) || any((a ^ b.yzx) < vec3u(CORNER_COPIES))
-        || any((a ^ b.zxy) < vec3u(CORNER_COPIES));
+    return any(a == b) || any(a == b.yzx) || any(a == b.zxy);
 }
 
 // Every group of samples that belong together is shaded once, in their middle, and counts by its number. So nothing is

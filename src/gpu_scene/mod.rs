@@ -1,6 +1,5 @@
 //! A [`Scene`] on the GPU: buffers, textures and bind groups, made once.
 
-mod corners;
 mod edit;
 mod environment;
 mod geometry;

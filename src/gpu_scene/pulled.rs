@@ -2,7 +2,6 @@
 //! numbers in one fetch, where a buffer takes one for each. Every draw has one place, so vertices are brought there once
 //! and not at every corner of every pixel.
 
-use super::corners::Corners;
 use super::geometry::attribute_data;
 use super::gpu_instance;
 use crate::frame::{Drawable, Drawables};
@@ -44,9 +43,8 @@ impl PulledGeometry {
             let instance = instance(drawables, drawable);
             places.push(PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32, instance });
             let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
-            let corners = Corners::of(primitive, &drawable.vertex_features);
-            triangles.extend(corners.triangles(primitive));
-            append_vertices(&mut vertices, primitive, &corners.order, &drawable.vertex_features, &instance);
+            triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
+            append_vertices(&mut vertices, primitive, &drawable.vertex_features, &instance);
         }
         Some(Self {
             vertices: texture(device, queue, formats::PULLED_VERTICES, vertices)?,
@@ -67,18 +65,12 @@ fn instance(drawables: &Drawables, drawable: &Drawable) -> Instance {
 }
 
 /// The attributes of each vertex side by side, in whole texels, as the vertex shader of the forward pass hands them on.
-fn append_vertices(
-    texels: &mut Vec<[f32; 4]>,
-    primitive: &Primitive,
-    order: &[u32],
-    features: &VertexFeatures,
-    instance: &Instance,
-) {
+fn append_vertices(texels: &mut Vec<[f32; 4]>, primitive: &Primitive, features: &VertexFeatures, instance: &Instance) {
     let data = attribute_data(primitive, features);
     let size = 4 * texels_per_vertex(features) as usize;
     let mut floats = Vec::with_capacity(size);
-    for vertex in order.iter().map(|vertex| *vertex as usize) {
-        data.iter().for_each(|(attribute, count)| floats.extend_from_slice(&attribute[vertex * count..][..*count]));
+    for i in 0..primitive.positions.len() {
+        data.iter().for_each(|(attribute, count)| floats.extend_from_slice(&attribute[i * count..][..*count]));
         floats.resize(size, 0.0);
         place(&mut floats, features, instance);
         texels.extend_from_slice(bytemuck::cast_slice(&floats));

@@ -28,7 +28,7 @@ pub use modules::{
     DisplayFeatures, TargetLight, background_module, background_module_into, covered_module, deferred_module,
     display_module, forward_module, forward_module_into, forward_slots, present_module, visibility_module,
 };
-pub use pulled::{CORNER_COPIES, PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, texels_per_vertex};
+pub use pulled::{PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, texels_per_vertex};
 #[cfg(feature = "cli")]
 pub(crate) use sources::embedded;
 pub use sources::{SOURCES, ShaderSources};

@@ -11,9 +11,6 @@ pub const SEEN_SAMPLES_BINDING: u32 = 3;
 /// Width of the textures that vertices and triangles are fetched from, texels.
 pub const PULLED_ROW_TEXELS: u32 = 4096;
 
-/// Corners of triangles are numbers of vertices, times this; to it comes the place among the copies of that vertex.
-pub const CORNER_COPIES: u32 = 16;
-
 /// How many texels of four floats one vertex takes.
 pub fn texels_per_vertex(vertex: &VertexFeatures) -> u32 {
     attributes(vertex).iter().map(components).sum::<u32>().div_ceil(4)
@@ -22,9 +19,7 @@ pub fn texels_per_vertex(vertex: &VertexFeatures) -> u32 {
 /// The `<interface>` slot: as that of the forward pass, and `pulled_vertex` and `interpolated`.
 pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     let attributes = attributes(vertex);
-    let mut text = format!(
-        "const PULLED_ROW_TEXELS: u32 = {PULLED_ROW_TEXELS}u;\nconst CORNER_COPIES: u32 = {CORNER_COPIES}u;\n\n"
-    );
+    let mut text = format!("const PULLED_ROW_TEXELS: u32 = {PULLED_ROW_TEXELS}u;\n\n");
     text.push_str("struct VertexOut {\n    position_in_clip: vec4f,\n    position_in_world: vec3f,\n");
     for Attribute { name, wgsl } in &attributes[1..] {
         let _ = writeln!(text, "    {name}: {wgsl},");
