@@ -11,7 +11,7 @@ use super::viewer::{Effect, Viewer};
 use super::watch::Watch;
 use crate::capture::CaptureError;
 use crate::output;
-use crate::scene::View;
+use crate::scene::{Channel, View};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -96,7 +96,12 @@ impl Desk {
 
     fn wanted_light(&self) -> WantedLight {
         let state = &self.viewer.state;
-        WantedLight { source: state.environment.source.clone(), suns: state.look.quality.parts_suns() }
+        let source = match (state.look.debug_view, state.environment.source.as_str()) {
+            // Surfaces that nothing lights have no lobes to show.
+            (Some(Channel::Furnace), "black") => "white",
+            (_, source) => source,
+        };
+        WantedLight { source: source.to_owned(), suns: state.look.quality.parts_suns() }
     }
 
     /// Shows a line of text.

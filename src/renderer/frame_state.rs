@@ -24,8 +24,8 @@ pub struct FrameState {
     /// The scene that the rest is about.
     scene: Option<Identity>,
     visible: Option<VisibleList>,
-    /// Beside the uniform: instances, which of them are visible, and clusters of lights.
-    pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer, Option<wgpu::Buffer>)>,
+    /// Beside the uniform: instances, which of them are visible, clusters of lights, and whether the furnace is bound.
+    pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer, Option<wgpu::Buffer>, bool)>,
     pub(super) background: KeptUniform<wgpu::TextureView>,
     pub(super) display: KeptUniform<wgpu::TextureView>,
     pub(super) deferred: Option<DeferredGroups>,

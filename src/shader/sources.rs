@@ -29,6 +29,7 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "brdf/v_smith_ggx_correlated_anisotropic.wgsl",
     "brdf/v_smith_ggx_separable.wgsl",
     "channel/channel.wgsl",
+    "channel/checker.wgsl",
     "channel/lit.wgsl",
     "channel/lobes_disney.wgsl",
     "channel/lobes_standard.wgsl",

@@ -11,6 +11,7 @@ mod cache;
 mod cli;
 mod compare;
 mod culling;
+mod debug_views;
 mod disney;
 mod embed;
 mod features;
