@@ -174,6 +174,43 @@ fn bad_files_are_named_in_the_window_and_leave_the_model() {
 }
 
 #[test]
+fn a_model_with_a_damaged_image_leaves_the_one_before() {
+    let Some(screen) = Screen::open() else { return };
+    // Its geometry is whole, and so may be seen before the image is found to be damaged.
+    let floats = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let bytes: Vec<u8> = floats.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    std::fs::write(screen.path("corners.bin"), bytes).unwrap();
+    std::fs::write(screen.path("image.png"), b"\x89PNG\r\n\x1a\nand no more").unwrap();
+    let model = serde_json::json!({
+        "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "material": 0 }] }],
+        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }], "images": [{ "uri": "image.png" }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] },
+            { "bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2" },
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteLength": 24 }],
+        "buffers": [{ "uri": "corners.bin", "byteLength": 36 }],
+    });
+    std::fs::write(screen.path("damaged.gltf"), model.to_string()).unwrap();
+    let shot: Vec<String> = [key("F12").as_slice(), &key("Escape")].concat();
+    // A message that is not there fails the replay.
+    let bad = [vec![drop_file("damaged.gltf")], click("message/close", 0.5).into()].concat();
+    let events = [drag(), shot.clone(), bad, drag(), shot].concat();
+    screen.play(&asset("spheres.glb"), &["--size", "300x200"], &events).end();
+    for saved in ["spheres-1", "spheres-2"] {
+        screen.assert_renders_again(saved);
+    }
+    assert_ne!(screen.state("spheres-1.json")["camera"], screen.state("spheres-2.json")["camera"]);
+    // A window in which nothing was open stays empty, and opens the next.
+    let events = [click("message/close", 0.5).into(), vec![drop_file(&asset("showcase.glb"))], drag()].concat();
+    let options = ["--size", "300x200", "--screenshot-at-end", "later.png"];
+    screen.play("damaged.gltf", &options, &events).end();
+    screen.assert_renders_again("later");
+}
+
+#[test]
 fn the_truth_comes_beside_the_picture() {
     let Some(screen) = Screen::open() else { return };
     let (width, height) = (300, 240);
