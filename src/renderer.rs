@@ -19,12 +19,12 @@ use crate::gpu::Identity;
 use crate::gpu::formats::{self, Precision};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError, WhiteFurnace};
 use crate::passes::{
-    BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
-    ForwardPipelines, ForwardTarget,
+    BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget, DeferredPipelines, DeferredTarget,
+    DisplayPipelines, ForwardPipelines, ForwardTarget,
 };
 use crate::scene::{Background, Channel, EnvironmentMaps, Scene, Topology, View};
 use crate::shader::types::FrameUniform;
-use crate::shader::{DisplayFeatures, ShaderError, ShaderSources};
+use crate::shader::{Backdrop, DisplayFeatures, ShaderError, ShaderSources};
 use draws::{PlanPipelines, draw_plan};
 use std::sync::Arc;
 use uniforms::{background_uniform, display_uniform, frame_uniform};
@@ -352,14 +352,21 @@ impl Renderer {
         state: &mut FrameState,
     ) -> Result<Option<BackgroundPass>, RenderError> {
         let (Some(environment), true) = (&mut scene.environment, state.plan.panorama) else { return Ok(None) };
-        let panorama = environment.panorama(device, queue)?;
-        let radiance_scale = environment.intensity * panorama.scale;
-        let uniform = background_uniform(view, environment.environment_from_world, radiance_scale);
+        let from_world = environment.environment_from_world;
+        let (source, backdrop, scale) = if view.background_blur > 0.0 {
+            let (uniform, atlas) = (environment.uniform.clone(), environment.atlas.clone());
+            let source = BackgroundSource::Environment(uniform, atlas, self.shared.clamp_sampler.clone());
+            (source, Backdrop::Blurred, 1.0)
+        } else {
+            let panorama = environment.panorama(device, queue)?;
+            (BackgroundSource::Panorama(panorama.view), Backdrop::Sharp, panorama.scale)
+        };
+        let uniform = background_uniform(view, from_world, environment.intensity * scale);
         let ForwardTarget { format, samples, depth, light } = target;
         let samples = if under { 1 } else { samples };
-        let into = BackgroundTarget { format, samples, depth, light, under };
+        let into = BackgroundTarget { format, samples, depth, light, under, backdrop };
         let uniform = (&uniform, &mut state.background);
-        Ok(Some(self.background.prepare((device, queue), &self.sources, into, &panorama, uniform)?))
+        Ok(Some(self.background.prepare((device, queue), &self.sources, into, source, uniform)?))
     }
 
     /// Records exposure, tone map and sRGB from `radiance` into `target`.

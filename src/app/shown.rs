@@ -114,6 +114,7 @@ pub fn view_of(state: &ViewerState, around: &Surroundings) -> View {
             BackgroundState::Environment => Background::Environment,
             BackgroundState::Color(color) => Background::Color(Vec3::from_array(color)),
         },
+        background_blur: look.background_blur,
         energy_compensation: look.energy_compensation,
         geometry: look.geometry,
         quality: look.quality,

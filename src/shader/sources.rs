@@ -14,6 +14,8 @@ pub(crate) use embedded;
 
 /// Every file under `shaders/` that a frame can be made of: its path there, and its text.
 pub const SOURCES: &[(&str, &str)] = embedded![
+    "background/blurred.wgsl",
+    "background/sharp.wgsl",
     "brdf/d_ggx.wgsl",
     "brdf/d_ggx_anisotropic.wgsl",
     "brdf/d_gtr1.wgsl",

@@ -4,6 +4,7 @@
 #![allow(clippy::duplicate_mod)]
 
 mod architecture;
+mod backdrop;
 mod bench;
 mod bench_suite;
 mod browser;

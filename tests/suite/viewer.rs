@@ -88,6 +88,7 @@ fn materials_lights_and_views_are_edited() {
         vec![drop_file("sky.hdr")],
         key("P").into(),
         click("environment/rotation", 0.2).into(),
+        click("look/background-blur", 0.2).into(),
         click("part/Environment", 0.1).into(),
         click("part/Picture", 0.1).into(),
         click("part/File", 0.1).into(),
@@ -110,6 +111,7 @@ fn materials_lights_and_views_are_edited() {
     assert!(material["disney"]["clearcoat"].as_f64().unwrap() > 0.1, "{material}");
     assert!(state["environment"]["source"].as_str().unwrap().ends_with("sky.hdr"), "{state}");
     assert!(state["environment"]["rotation_deg"].as_f64().unwrap() > 1.0, "{state}");
+    assert!(state["look"]["background_blur"].as_f64().unwrap() > 0.05, "{state}");
     assert_eq!(state["hidden_nodes"], serde_json::json!([1]), "{state}");
     assert_eq!(state["look"]["quality"], "high");
 
