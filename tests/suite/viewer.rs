@@ -176,6 +176,45 @@ fn bad_files_are_named_in_the_window_and_leave_the_model() {
 }
 
 #[test]
+fn files_are_looked_for_in_the_window() {
+    let Some(screen) = Screen::open() else { return };
+    std::fs::create_dir(screen.path("models")).unwrap();
+    for copy in ["first.glb", "models/second.glb"] {
+        std::fs::copy(asset("spheres.glb"), screen.path(copy)).unwrap();
+    }
+    std::fs::write(screen.path("models/notes.txt"), "not listed").unwrap();
+    let sky = image::Rgb32FImage::from_fn(32, 16, |_, y| image::Rgb([0.2, 0.4, 0.1 * y as f32]));
+    sky.save(screen.path("sky.hdr")).unwrap();
+    let events = [
+        key("P").to_vec(),
+        // Escape closes it without a choice.
+        click("file/browse", 0.5).into(),
+        vec![point_at("browser/models", 0.5)],
+        key("Escape").into(),
+        vec![hold(1)],
+        click("file/browse", 0.5).into(),
+        vec![hold(1)],
+        click("browser/models", 0.5).into(),
+        vec![hold(1)],
+        click("browser/second.glb", 0.5).into(),
+        vec![hold(1)],
+        click("environment/browse", 0.5).into(),
+        vec![hold(1)],
+        click("browser/..", 0.5).into(),
+        vec![hold(1)],
+        click("browser/sky.hdr", 0.5).into(),
+        key("P").into(),
+    ];
+    let options = ["--size", "800x700", "--screenshot-at-end", "found.png"];
+    screen.play("first.glb", &options, &events.concat()).end();
+    screen.assert_renders_again("found");
+    let state = screen.state("found.json");
+    assert!(state["model"].as_str().unwrap().ends_with("models/second.glb"), "{state}");
+    let source = state["environment"]["source"].as_str().unwrap();
+    assert!(source.ends_with("sky.hdr") && !source.contains("models"), "{state}");
+}
+
+#[test]
 fn a_model_with_a_damaged_image_leaves_the_one_before() {
     let Some(screen) = Screen::open() else { return };
     // Its geometry is whole, and so may be seen before the image is found to be damaged.
