@@ -81,7 +81,7 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
     }
 }
 
-/// The same of the panorama at a size of [`SKETCH_SIZE`]: blurred, and some ten times as fast.
+/// The same of the panorama reduced to 64 x 32 texels: blurred, and sooner there.
 pub fn sketch(image: &EnvironmentImage, options: &BakeOptions) -> EnvironmentMaps {
     let (width, height) = SKETCH_SIZE;
     bake(&Panorama::resampled(image, width, height).into(), options, &Silent)
