@@ -84,6 +84,7 @@ fn view(cell_px: u32) -> View {
         exposure_ev: -0.6,
         tone_map: ToneMap::Neutral,
         background: Background::Color(Vec3::splat(0.11)),
+        background_blur: 0.0,
         energy_compensation: true,
         geometry: Default::default(),
         quality: Default::default(),

@@ -3,6 +3,8 @@
 //! [`Renderer`] holds what lives as long as the device. It never prints, and frames it records into the
 //! caller's encoder; only uploads are submitted, and waited for, so that little is staged at a time.
 
+mod channel;
+mod draws;
 mod frame_state;
 mod host;
 mod lifetime;
@@ -15,14 +17,15 @@ use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, is_worth_deferring, plan};
 use crate::gpu::Identity;
 use crate::gpu::formats::{self, Precision};
-use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError, WhiteFurnace};
 use crate::passes::{
-    BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
-    ForwardPipelines, ForwardTarget, draw,
+    BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget, DeferredPipelines, DeferredTarget,
+    DisplayPipelines, ForwardPipelines, ForwardTarget,
 };
-use crate::scene::{Background, EnvironmentMaps, Scene, Topology, View};
+use crate::scene::{Background, Channel, EnvironmentMaps, Scene, Topology, View};
 use crate::shader::types::FrameUniform;
-use crate::shader::{DisplayFeatures, ShaderError, ShaderSources};
+use crate::shader::{Backdrop, DisplayFeatures, ShaderError, ShaderSources};
+use draws::{PlanPipelines, draw_plan};
 use std::sync::Arc;
 use uniforms::{background_uniform, display_uniform, frame_uniform};
 
@@ -44,6 +47,10 @@ pub enum RenderError {
     NotDeferrable,
     #[error("{feature} needs a pass of its own: encode_radiance and encode_display have one")]
     NeedsOwnPass { feature: &'static str },
+    #[error("the furnace shows what surfaces return of an environment's light; give the scene one, whichever it is")]
+    NoFurnace,
+    #[error("this device cannot draw {what}: it lacks {feature}")]
+    Device { what: &'static str, feature: &'static str },
     #[error("no frame of this scene has been prepared")]
     NotPrepared,
     #[error("the pass cannot be drawn into: {0}")]
@@ -108,6 +115,8 @@ pub struct Renderer {
     display: DisplayPipelines,
     /// For hosts that have no depth buffer.
     own_depth: Option<wgpu::TextureView>,
+    /// Of the channel that shows it, once that was asked for.
+    furnace: Option<WhiteFurnace>,
     pub(crate) identity: Identity,
     /// `Off` draws the same pictures with more work.
     pub culling: Culling,
@@ -130,6 +139,7 @@ impl Renderer {
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
             own_depth: None,
+            furnace: None,
             identity: Identity::default(),
             culling: Culling::On,
         }
@@ -264,12 +274,13 @@ impl Renderer {
     ) -> Result<FrameStats, RenderError> {
         check_size(device, view)?;
         let forward_target = ForwardTarget::radiance(target.format, target.samples);
+        self.check_channel(device, scene, view, target.format)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
         let visible = state.plan_frame((device, queue), scene, view, options);
         let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
         let panorama = self.panorama((device, queue), scene, view, (forward_target, under), state)?;
         let uniform = frame_uniform(scene, view);
-        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
+        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
             1.0
@@ -294,12 +305,9 @@ impl Renderer {
             if let Some(pixel) = target.pixel {
                 pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
             }
-            let pipelines: Vec<_> = self.forward.of_plan(&state.plan, forward_target).collect();
-            draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.opaque);
-            if let Some(panorama) = &panorama {
-                panorama.draw(&mut pass);
-            }
-            draw(&mut pass, &pipelines, scene, &frame_group, &state.plan.blended);
+            let mut pipelines = PlanPipelines::default();
+            pipelines.replace(self, view, &state.plan, forward_target);
+            draw_plan(&mut pass, &pipelines, scene, &frame_group, (&state.plan, panorama.as_ref()));
             RenderPath::Forward
         };
         state.was_drawn(scene, view, self.culling, target);
@@ -308,22 +316,30 @@ impl Renderer {
 
     /// Group 0 of the frame.
     fn frame_group(
-        &self,
+        &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         scene: &mut GpuScene,
         (view, visible): (&View, wgpu::Buffer),
         uniform: &FrameUniform,
         state: &mut FrameState,
-    ) -> wgpu::BindGroup {
+    ) -> Result<wgpu::BindGroup, RenderError> {
+        let furnace = match (&mut self.furnace, view.channel) {
+            (Some(furnace), Some(Channel::Furnace)) => Some(&*furnace),
+            (none, Some(Channel::Furnace)) => Some(&*none.insert(WhiteFurnace::new(device, queue)?)),
+            _ => None,
+        };
         let origin_in_world = scene.drawables.origin_in_world;
         let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
-        state.frame.group(
+        let table = clusters.as_ref().map(|clusters| clusters.table.clone());
+        Ok(state.frame.group(
             (device, queue),
             "frame",
             bytemuck::bytes_of(uniform),
-            (scene.instances.clone(), visible, clusters.as_ref().map(|clusters| clusters.table.clone())),
-            |frame, (_, visible, _)| scene.frame_group(device, &self.shared, (frame, visible), clusters.as_ref()),
-        )
+            (scene.instances.clone(), visible, table, furnace.is_some()),
+            |frame, (_, visible, ..)| {
+                scene.frame_group(device, &self.shared, (frame, visible), clusters.as_ref(), furnace)
+            },
+        ))
     }
 
     /// The panorama of the frame, where it has one.
@@ -336,14 +352,21 @@ impl Renderer {
         state: &mut FrameState,
     ) -> Result<Option<BackgroundPass>, RenderError> {
         let (Some(environment), true) = (&mut scene.environment, state.plan.panorama) else { return Ok(None) };
-        let panorama = environment.panorama(device, queue)?;
-        let radiance_scale = environment.intensity * panorama.scale;
-        let uniform = background_uniform(view, environment.environment_from_world, radiance_scale);
+        let from_world = environment.environment_from_world;
+        let (source, backdrop, scale) = if view.background_blur > 0.0 {
+            let (uniform, atlas) = (environment.uniform.clone(), environment.atlas.clone());
+            let source = BackgroundSource::Environment(uniform, atlas, self.shared.clamp_sampler.clone());
+            (source, Backdrop::Blurred, 1.0)
+        } else {
+            let panorama = environment.panorama(device, queue)?;
+            (BackgroundSource::Panorama(panorama.view), Backdrop::Sharp, panorama.scale)
+        };
+        let uniform = background_uniform(view, from_world, environment.intensity * scale);
         let ForwardTarget { format, samples, depth, light } = target;
         let samples = if under { 1 } else { samples };
-        let into = BackgroundTarget { format, samples, depth, light, under };
+        let into = BackgroundTarget { format, samples, depth, light, under, backdrop };
         let uniform = (&uniform, &mut state.background);
-        Ok(Some(self.background.prepare((device, queue), &self.sources, into, &panorama, uniform)?))
+        Ok(Some(self.background.prepare((device, queue), &self.sources, into, source, uniform)?))
     }
 
     /// Records exposure, tone map and sRGB from `radiance` into `target`.

@@ -1,6 +1,7 @@
 //! Channels as pictures that people can read: debug views of the window and of `render --debug-view`.
 
 use crate::math::color::srgb_from_linear;
+use crate::metrics::heat::heat;
 use crate::reference::color::display;
 use crate::scene::{Background, Channel, Input, Projection, RadianceImage, View};
 use glam::{DVec3, Vec3, Vec4};
@@ -22,13 +23,24 @@ enum Scale {
     Range,
     /// The same, but the least is white.
     RangeInverted,
+    /// Numbers in [0, 1], as they are; what is larger, magenta.
+    Share,
+    /// Colours of heat, up to [`LAYERS_MAX`].
+    Layers,
 }
+
+/// From so many layers on all look the same.
+const LAYERS_MAX: f32 = 8.0;
+/// A share of light that is larger is more than half floats and 8 bits have rounded up.
+const SHARE_MAX: f32 = 1.004;
 
 fn scale(channel: Channel) -> Scale {
     match channel {
         Channel::Radiance { .. } => Scale::Radiance,
         Channel::LightCount => Scale::Range,
-        Channel::Nan => Scale::Number,
+        Channel::Nan | Channel::UvChecker | Channel::Wireframe => Scale::Number,
+        Channel::Furnace => Scale::Share,
+        Channel::Overdraw => Scale::Layers,
         Channel::Input(input) => match input {
             Input::BaseColor | Input::F0 => Scale::Color,
             Input::Emissive => Scale::Radiance,
@@ -80,6 +92,9 @@ pub fn picture(channel: Channel, image: &RadianceImage, view: &View) -> Vec<u8> 
             Scale::Number => value,
             Scale::Direction => 0.5 * value + 0.5,
             Scale::Fraction => value - value.floor(),
+            Scale::Share if value.max_element() > SHARE_MAX => Vec3::new(1.0, 0.0, 1.0),
+            Scale::Share => value,
+            Scale::Layers => Vec3::from(heat(f64::from(value.x / LAYERS_MAX)).map(f32::from)) / 255.0,
             Scale::Range => (value - least) / (most - least).max(Vec3::splat(f32::MIN_POSITIVE)),
             Scale::RangeInverted => (most - value) / (most - least).max(Vec3::splat(f32::MIN_POSITIVE)),
         }
@@ -143,6 +158,10 @@ mod tests {
         assert_eq!(shown("normal", &[[0.0, -1.0, 1.0, 1.0]]), [128, 0, 255, 255]);
         assert_eq!(shown("uv", &[[-0.2, 1.4, 0.0, 1.0]]), [204, 102, 0, 255]);
         assert_eq!(shown("base-color", &[[0.5, 0.0, 1.0, 1.0]]), [188, 0, 255, 255]);
+        assert_eq!(shown("furnace", &[[1.002, 0.5, 0.0, 1.0]]), [255, 128, 0, 255]);
+        assert_eq!(shown("furnace", &[[1.01, 0.5, 0.0, 1.0]]), [255, 0, 255, 255]);
+        let layers = shown("overdraw", &[[1.0; 4], [2.0, 2.0, 2.0, 1.0], [8.0, 8.0, 8.0, 1.0], [9.0, 9.0, 9.0, 1.0]]);
+        assert!(layers[0] < layers[4] && layers[4] < layers[8] && layers[8..12] == layers[12..], "{layers:?}");
         let depths = shown("depth", &[[2.0, 2.0, 2.0, 1.0], [4.0, 4.0, 4.0, 1.0], [3.0, 3.0, 3.0, 1.0]]);
         assert_eq!([depths[0], depths[4], depths[8]], [255, 0, 128]);
     }

@@ -1,7 +1,7 @@
 //! What lies before the user: a model, the light on it, and what is being fetched.
 
 use super::folder;
-use super::loading::{Loaded, LoadedLight, LoadedModel, Loading, Wake, Wanted, WantedLight};
+use super::loading::{LoadedLight, LoadedModel, Loading, Part, Wake, Wanted, WantedLight};
 use super::panel::Inspected;
 use super::shown::{Shown, view_of};
 use super::stage::Stage;
@@ -10,8 +10,9 @@ use super::truth::Truth;
 use super::viewer::{Effect, Viewer};
 use super::watch::Watch;
 use crate::capture::CaptureError;
+use crate::gpu_scene::TextureLevels;
 use crate::output;
-use crate::scene::View;
+use crate::scene::{Channel, Scene, View};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -29,6 +30,12 @@ pub(super) struct Texts {
     pub(super) panorama: String,
 }
 
+/// What comes back when the model of a sketch turns out to be damaged.
+struct Before {
+    state: ViewerState,
+    shown: Option<Shown>,
+}
+
 /// Models that are remembered while the window is open.
 const RECENT: usize = 12;
 
@@ -44,6 +51,10 @@ pub(super) struct Desk {
     pub(super) inspected: Inspected,
     pub(super) loading: Option<Loading>,
     light: Option<LoadedLight>,
+    /// A model that waits for its light, and whether it is a sketch.
+    arrived: Option<(LoadedModel, bool)>,
+    /// What was there before the sketch that is shown.
+    before: Option<Before>,
     pub(super) truth: Option<Truth>,
     /// Whether a model is read again when its files change.
     watches: bool,
@@ -66,6 +77,8 @@ impl Desk {
             inspected: Inspected::default(),
             loading: None,
             light: None,
+            arrived: None,
+            before: None,
             truth: None,
             watches,
             watch: None,
@@ -89,14 +102,29 @@ impl Desk {
 
     fn fetch(&mut self, model: Option<PathBuf>) {
         let light = self.wanted_light();
-        let light = (self.light.as_ref().map(|light| &light.wanted) != Some(&light)).then_some(light);
+        let light = (!self.is_lit_by(&light)).then_some(light);
         let wanted = Wanted { model, light };
         self.loading = Some(Loading::start(wanted, Arc::clone(&self.max_side), Arc::clone(&self.wake)));
     }
 
     fn wanted_light(&self) -> WantedLight {
         let state = &self.viewer.state;
-        WantedLight { source: state.environment.source.clone(), suns: state.look.quality.parts_suns() }
+        let source = match (state.look.debug_view, state.environment.source.as_str()) {
+            // Surfaces that nothing lights have no lobes to show.
+            (Some(Channel::Furnace), "black") => "white",
+            (_, source) => source,
+        };
+        WantedLight { source: source.to_owned(), suns: state.look.quality.parts_suns() }
+    }
+
+    /// Whether this light is there, and not just roughly.
+    fn is_lit_by(&self, wanted: &WantedLight) -> bool {
+        self.light.as_ref().is_some_and(|light| light.wanted == *wanted && !light.is_rough)
+    }
+
+    /// Whether what is shown will look otherwise by itself: images or light are not there yet.
+    fn is_provisional(&self) -> bool {
+        self.before.is_some() || self.light.as_ref().is_some_and(|light| light.is_rough)
     }
 
     /// Shows a line of text.
@@ -120,6 +148,9 @@ impl Desk {
                     self.fetch(Some(model));
                 }
             }
+            Effect::Screenshot if self.is_provisional() => {
+                self.say("nothing is saved before textures and light are there".into());
+            }
             Effect::Screenshot => {
                 let path = self.free_name();
                 if let Some(stage) = stage {
@@ -136,18 +167,20 @@ impl Desk {
 
     /// Puts what has been read before the user, and begins to read what is missing.
     pub(super) fn turn(&mut self, stage: &mut Stage) {
-        if let Some(loaded) = self.loading.as_ref().and_then(Loading::poll) {
-            self.loading = None;
-            self.take(loaded, stage);
+        if let Some(loading) = &mut self.loading {
+            let parts = loading.poll();
+            if loading.is_done() {
+                self.loading = None;
+            }
+            self.take(parts, stage);
         }
         if self.watch.as_ref().is_some_and(Watch::has_changed) {
             self.effect(Effect::Reload, None);
         }
         let wanted = self.wanted_light();
-        let has = self.light.as_ref().is_some_and(|light| light.wanted == wanted);
         let comes = self.loading.as_ref().and_then(|loading| loading.wanted.light.as_ref()) == Some(&wanted);
-        if !has && !comes {
-            let model = self.loading.as_ref().and_then(|loading| loading.wanted.model.clone());
+        if !self.is_lit_by(&wanted) && !comes {
+            let model = self.loading.as_ref().and_then(|loading| loading.missing_model().cloned());
             self.fetch(model);
         }
         if let Some(shown) = &mut self.viewer.shown
@@ -157,28 +190,46 @@ impl Desk {
         }
     }
 
-    fn take(&mut self, loaded: Loaded, stage: &mut Stage) {
+    fn take(&mut self, parts: Vec<Part>, stage: &mut Stage) {
         let mut is_relit = false;
-        match loaded.light {
-            Some(Ok(light)) => {
-                self.light = Some(light);
-                is_relit = true;
+        for part in parts {
+            match part {
+                Part::RoughLight(light) | Part::Light(Ok(light)) => {
+                    self.light = Some(light);
+                    is_relit = true;
+                }
+                Part::Light(Err(problem)) => {
+                    self.say(problem);
+                    let before = self.light.as_ref().map(|light| light.wanted.source.clone());
+                    self.viewer.state.environment.source = before.unwrap_or_else(|| "neutral".into());
+                }
+                Part::Sketch(model) => self.arrived = Some((model, true)),
+                Part::Model(Ok(model)) => self.arrived = Some((model, false)),
+                Part::Model(Err(problem)) => {
+                    self.arrived = None;
+                    self.bring_back(stage);
+                    self.say(problem);
+                }
             }
-            Some(Err(problem)) => {
-                self.say(problem);
-                let before = self.light.as_ref().map(|light| light.wanted.source.clone());
-                self.viewer.state.environment.source = before.unwrap_or_else(|| "neutral".into());
+        }
+        let wanted = self.wanted_light();
+        let has_light = self.light.as_ref().is_some_and(|light| light.wanted == wanted);
+        if has_light || !self.loading.as_ref().is_some_and(Loading::awaits_light) {
+            match self.arrived.take() {
+                Some((model, false)) => return self.show(model, stage),
+                Some((model, true)) if !self.is_open(&model.path) => return self.show_sketch(model, stage),
+                _ => {}
             }
-            None => {}
         }
-        match loaded.model {
-            Some(Ok(model)) => self.show(model, stage),
-            Some(Err(problem)) => self.say(problem),
-            None => {}
+        if is_relit {
+            self.relight(stage);
         }
-        let panorama = self.light.as_ref().and_then(|light| light.panorama.clone());
-        let (image, maps) = panorama.unzip();
-        if let (Some(shown), true) = (&mut self.viewer.shown, is_relit) {
+    }
+
+    /// Lights what is shown anew.
+    fn relight(&mut self, stage: &mut Stage) {
+        let (image, maps) = self.light.as_ref().and_then(|light| light.panorama.clone()).unzip();
+        if let Some(shown) = &mut self.viewer.shown {
             shown.surround(image, &self.viewer.state);
             if let Err(error) = stage.relight(shown, &self.viewer.state, maps) {
                 self.fail(&error);
@@ -186,20 +237,44 @@ impl Desk {
         }
     }
 
+    /// Whether this model is shown, and with its images.
+    fn is_open(&self, path: &Path) -> bool {
+        let is_named = self.viewer.state.model.as_deref() == Some(path);
+        is_named && self.viewer.shown.is_some() && self.before.is_none()
+    }
+
+    /// Puts a model before the user while its images are being decoded.
+    fn show_sketch(&mut self, model: LoadedModel, stage: &mut Stage) {
+        let state = self.viewer.state.clone();
+        let opened = self.place(model.scene, &model.path, (model.levels, stage));
+        let before = Before { state, shown: self.viewer.shown.replace(opened.0) };
+        self.before.get_or_insert(before);
+        if let Err(error) = opened.1 {
+            self.fail(&error);
+        }
+    }
+
+    /// What is shown now is on the screen.
+    pub(super) fn is_seen(&self) {
+        let is_first = self.viewer.shown.is_some() && self.is_provisional();
+        if let (Some(loading), true) = (&self.loading, is_first) {
+            loading.is_seen();
+        }
+    }
+
+    /// Shows again what was shown before the sketch.
+    fn bring_back(&mut self, stage: &mut Stage) {
+        let Some(Before { state, shown }) = self.before.take() else { return };
+        let size_px = self.viewer.state.size_px;
+        (self.viewer.state, self.viewer.shown) = (ViewerState { size_px, ..state }, shown);
+        stage.close();
+        self.move_to(stage);
+    }
+
     fn show(&mut self, model: LoadedModel, stage: &mut Stage) {
         let LoadedModel { path, scene, warnings, extensions_used, levels } = model;
-        let state = &mut self.viewer.state;
-        // Read again, or named by a state that was opened: what was changed stays.
-        if state.model.as_ref() != Some(&path) {
-            *state = state.for_model(&path);
-        }
-        let mut shown = Shown::new(scene, state);
-        if state.camera.pose.is_none() {
-            state.camera.pose = Some(super::camera::Pose::Orbit(shown.around.home));
-        }
-        let (image, maps) = self.light.as_ref().and_then(|light| light.panorama.clone()).unzip();
-        shown.surround(image, state);
-        let opened = stage.open(&mut shown, state, Some(levels), maps);
+        let (shown, opened) = self.place(scene, &path, (levels, stage));
+        self.before = None;
         let mut message = None;
         if self.watches && self.watch.as_ref().is_none_or(|watch| watch.model != path) {
             match Watch::new(&path, Arc::clone(&self.wake)) {
@@ -216,6 +291,28 @@ impl Desk {
         if let Err(error) = opened {
             self.fail(&error);
         }
+    }
+
+    /// Puts a model and its light on the device, as the state shows it.
+    fn place(
+        &mut self,
+        scene: Scene,
+        path: &Path,
+        (levels, stage): (TextureLevels, &mut Stage),
+    ) -> (Shown, Result<(), CaptureError>) {
+        let state = &mut self.viewer.state;
+        // Read again, or named by a state that was opened: what was changed stays.
+        if state.model.as_deref() != Some(path) {
+            *state = state.for_model(path);
+        }
+        let mut shown = Shown::new(scene, state);
+        if state.camera.pose.is_none() {
+            state.camera.pose = Some(super::camera::Pose::Orbit(shown.around.home));
+        }
+        let (image, maps) = self.light.as_ref().and_then(|light| light.panorama.clone()).unzip();
+        shown.surround(image, state);
+        let opened = stage.open(&mut shown, state, Some(levels), maps);
+        (shown, opened)
     }
 
     /// Puts what is shown on another device.

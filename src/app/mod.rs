@@ -42,7 +42,7 @@ mod window;
 
 pub use channel_picture::{in_units, picture};
 pub use edit::{AlphaEdit, MaterialEdit};
-pub use shown::{Shown, environment_image, is_file, view_of};
+pub use shown::{Shown, environment_image, is_file, light_furnace, view_of};
 pub use state::{BackgroundState, CameraState, EnvironmentState, Look, SCHEMA, StateError, ViewerState};
 #[cfg(feature = "view")]
 pub use window::{ViewError, ViewOptions, run};

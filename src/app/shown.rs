@@ -5,7 +5,7 @@ use super::state::{BackgroundState, ViewerState};
 use crate::bake::studio;
 use crate::import::{ImportError, environment_from_path};
 use crate::reference::geometry::{Geometry, Ray};
-use crate::scene::{Background, Environment, EnvironmentImage, Light, Material, Scene, View};
+use crate::scene::{Background, Channel, Environment, EnvironmentImage, Light, Material, Scene, View};
 use glam::{DVec2, DVec3, Vec3};
 use std::path::Path;
 use std::sync::Arc;
@@ -114,6 +114,7 @@ pub fn view_of(state: &ViewerState, around: &Surroundings) -> View {
             BackgroundState::Environment => Background::Environment,
             BackgroundState::Color(color) => Background::Color(Vec3::from_array(color)),
         },
+        background_blur: look.background_blur,
         energy_compensation: look.energy_compensation,
         geometry: look.geometry,
         quality: look.quality,
@@ -138,6 +139,14 @@ pub fn environment_image(source: &str) -> Result<Option<EnvironmentImage>, Impor
         "neutral" => Some(studio::studio()),
         path => Some(environment_from_path(Path::new(path))?),
     })
+}
+
+/// A scene without light from around is given a white one where the furnace is to be shown, since surfaces that nothing
+/// lights have no lobes.
+pub fn light_furnace(scene: &mut Scene, channel: Option<Channel>) {
+    if channel == Some(Channel::Furnace) && scene.lit_environment().is_none() {
+        scene.environment = Some(Environment::new(EnvironmentImage::constant(Vec3::ONE)));
+    }
 }
 
 #[cfg(test)]

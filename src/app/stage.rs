@@ -91,9 +91,8 @@ impl Stage {
         levels: Option<TextureLevels>,
         maps: Option<Arc<EnvironmentMaps>>,
     ) -> Result<(), CaptureError> {
+        self.close();
         let Gpu { device, queue, .. } = &self.gpu;
-        (self.uploaded, self.applied, self.painted) = (None, None, None);
-        self.version += 1;
         shown.apply(state);
         let max_side = device.limits().max_texture_dimension_2d;
         let levels = levels.unwrap_or_else(|| TextureLevels::of(&shown.scene, max_side));
@@ -101,6 +100,12 @@ impl Stage {
         let uploaded = self.renderer.upload_with(device, queue, &shown.scene, levels, self.maps.as_deref())?;
         (self.uploaded, self.applied) = (Some(uploaded), Some(Applied::of(state)));
         Ok(())
+    }
+
+    /// Takes the scene off the device.
+    pub(super) fn close(&mut self) {
+        (self.uploaded, self.applied, self.painted) = (None, None, None);
+        self.version += 1;
     }
 
     /// Brings the scene on the device up to what `state` says.

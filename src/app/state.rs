@@ -70,6 +70,9 @@ pub struct Look {
     #[serde(with = "named")]
     pub tone_map: ToneMap,
     pub background: BackgroundState,
+    /// Of the environment in the background, in [0, 1]; 0 is sharp.
+    #[serde(default)]
+    pub background_blur: f32,
     pub energy_compensation: bool,
     #[serde(with = "named")]
     pub geometry: Geometry,
@@ -133,6 +136,7 @@ impl Default for Look {
             exposure_ev: 0.0,
             tone_map: ToneMap::default(),
             background: BackgroundState::Auto,
+            background_blur: 0.0,
             energy_compensation: true,
             geometry: Geometry::default(),
             quality: Quality::default(),
@@ -192,6 +196,7 @@ impl ViewerState {
                 "expected sides from 1 to 16384",
             ),
             (self.look.exposure_ev.is_finite(), "look.exposure_ev", "expected a finite number"),
+            ((0.0..=1.0).contains(&self.look.background_blur), "look.background_blur", "expected a number from 0 to 1"),
             (
                 cameras().all(|camera| camera.fov_deg > 0.0 && camera.fov_deg < 180.0),
                 "camera.fov_deg",

@@ -1,6 +1,7 @@
 //! What users do to a state: plain functions, without a window.
 
 use super::camera::Pose;
+use super::folder::{Kind, Listing};
 use super::input::{Button, Held, InputEvent};
 use super::keys::{self, Action};
 use super::named;
@@ -53,6 +54,8 @@ pub(super) struct Interface {
     pub fly: bool,
     /// For the user to read.
     pub message: Option<String>,
+    /// Where a file is looked for.
+    pub browser: Option<Listing>,
 }
 
 impl Default for Interface {
@@ -67,6 +70,7 @@ impl Default for Interface {
             errors: false,
             fly: false,
             message: None,
+            browser: None,
         }
     }
 }
@@ -251,8 +255,8 @@ impl Viewer {
             Action::Truth => toggle(&mut interface.truth),
             Action::Fly => toggle(&mut interface.fly),
             Action::Close => {
-                let open = interface.help || interface.message.is_some();
-                (interface.help, interface.message) = (false, None);
+                let open = interface.help || interface.message.is_some() || interface.browser.is_some();
+                (interface.help, interface.message, interface.browser) = (false, None, None);
                 if !open {
                     (interface.fly, interface.truth, interface.inspector) = (false, false, false);
                 }
@@ -318,14 +322,11 @@ impl Viewer {
     }
 
     fn drop_file(&mut self, path: PathBuf) -> Vec<Effect> {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("hdr" | "exr") => {
-                self.state.environment.source = path.to_string_lossy().into_owned();
-                Vec::new()
-            }
-            _ => vec![Effect::Open(path)],
+        if !Kind::Panorama.is_of(&path) {
+            return vec![Effect::Open(path)];
         }
+        self.state.environment.source = path.to_string_lossy().into_owned();
+        Vec::new()
     }
 }
 

@@ -248,6 +248,7 @@ impl App {
             self.due = Some(Instant::now());
         }
         let shown = open.show(size_px, &frame, split.as_ref()).map_err(CaptureError::from);
+        self.desk.is_seen();
         let checked = open.stage.gpu.check().map_err(CaptureError::from);
         if let Err(error) = drawn.and(asked).and(shown).and(checked) {
             if open.stage.gpu.is_lost() {

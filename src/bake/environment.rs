@@ -7,7 +7,7 @@ use super::octahedral::{Atlas, texel_mean};
 use super::panorama::Panorama;
 use super::sun;
 use crate::math::spaces::direction_from_octahedral;
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::scene::{EnvironmentImage, EnvironmentMaps, SpecularTile};
 use glam::DVec3;
 
@@ -23,6 +23,9 @@ const SMALLEST_FINEST_SIDE: u32 = 256;
 
 /// No mirror tile has a smaller interior.
 const SMALLEST_SIDE: u32 = 32;
+
+/// Texels of the panorama that [`sketch`] sees.
+const SKETCH_SIZE: (usize, usize) = (64, 32);
 
 /// Of what [`bake`] computes: raise it with every change of its results beyond rounding, so that nobody reads what an
 /// older version has stored. A test holds it against them.
@@ -76,6 +79,12 @@ pub fn bake(image: &EnvironmentImage, options: &BakeOptions, progress: &dyn Prog
         atlas_height: atlas.height,
         texels: atlas.texels,
     }
+}
+
+/// The same of the panorama reduced to 64 x 32 texels: blurred, and sooner there.
+pub fn sketch(image: &EnvironmentImage, options: &BakeOptions) -> EnvironmentMaps {
+    let (width, height) = SKETCH_SIZE;
+    bake(&Panorama::resampled(image, width, height).into(), options, &Silent)
 }
 
 /// Sides of the tiles of levels 0 and 1. A mirror tile of half the panorama's width has about its resolution: the

@@ -53,6 +53,11 @@ impl EnvironmentCache {
         Some(Self::in_folder(folder.join("environments"), DEFAULT_LIMIT_BYTES))
     }
 
+    /// The maps of [`environment::bake`], if there is a file of them.
+    pub fn find(&self, image: &EnvironmentImage, options: &BakeOptions) -> Option<EnvironmentMaps> {
+        self.store.load(&Key::of(image, options))
+    }
+
     /// The maps of [`environment::bake`], from a file if there is one. A file that is truncated or altered is replaced.
     pub fn bake(
         &self,

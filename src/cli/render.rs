@@ -12,7 +12,7 @@ use super::subject::{SubjectArgs, load_model};
 use super::tier::{TierArgs, TierStats};
 use super::truth::TruthArgs;
 use super::view::ViewArgs;
-use crate::app::{Shown, ViewerState, environment_image, in_units, picture, view_of};
+use crate::app::{Shown, ViewerState, environment_image, in_units, light_furnace, picture, view_of};
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
 use crate::gpu::Gpu;
 use crate::gpu::formats::Precision;
@@ -50,8 +50,8 @@ pub(super) struct RenderArgs {
     tier: TierArgs,
     #[command(flatten)]
     truth: TruthArgs,
-    /// Show what shading reads, or one part of the light, instead of the picture: base-color, normal, ibl-specular and
-    /// others (docs/inspect.md). An .exr holds the numbers as they are.
+    /// Show what shading reads, or one part of the light, instead of the picture: base-color, normal, ibl-specular,
+    /// furnace, overdraw, wireframe, uv-checker and others (docs/inspect.md). An .exr holds the numbers as they are.
     #[arg(long, value_name = "NAME", value_parser = debug_view::parse)]
     debug_view: Option<Channel>,
     /// Write what was drawn and how long it took.
@@ -159,7 +159,8 @@ struct Subject {
 
 fn load(args: &RenderArgs, progress: &dyn Progress, watch: &Stopwatch) -> Result<Subject, CliError> {
     let Some(path) = &args.state else {
-        let (scene, warnings) = args.subject.load(progress, watch)?;
+        let (mut scene, warnings) = args.subject.load(progress, watch)?;
+        light_furnace(&mut scene, args.debug_view);
         let view = args.view.view(&scene, args.subject.has_panorama())?;
         let view = View { channel: args.debug_view, ..view };
         return Ok(Subject { scene, warnings, view, model: args.subject.model().to_owned() });
@@ -175,6 +176,7 @@ fn load(args: &RenderArgs, progress: &dyn Progress, watch: &Stopwatch) -> Result
     let mut shown = Shown::new(scene, &state);
     shown.surround(environment?.map(Arc::new), &state);
     shown.apply(&state);
+    light_furnace(&mut shown.scene, state.look.debug_view);
     let view = view_of(&state, &shown.around);
     let warnings = warnings.iter().map(ToString::to_string).collect();
     Ok(Subject { view, warnings, model: model.to_owned(), scene: shown.scene })

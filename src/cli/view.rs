@@ -33,6 +33,9 @@ struct LookArgs {
     /// transparent, env, or a colour #rrggbb. By default a panorama of yours is seen, and a built-in one is not.
     #[arg(long, value_name = "transparent|env|#rrggbb", value_parser = parse_background)]
     background: Option<Background>,
+    /// Blur the panorama in the background, from 0 (sharp) to 1: as a surface of this perceptual roughness mirrors it.
+    #[arg(long, value_name = "0..1", default_value_t = 0.0, value_parser = parse_blur)]
+    background_blur: f32,
     /// Give back the energy that single-scattering microfacets lose.
     #[arg(long, value_enum, default_value = "on")]
     energy_compensation: Switch,
@@ -85,6 +88,11 @@ fn parse_background(text: &str) -> Result<Background, String> {
     }
 }
 
+fn parse_blur(text: &str) -> Result<f32, String> {
+    let blur = text.parse::<f32>().ok().filter(|blur| (0.0..=1.0).contains(blur));
+    blur.ok_or_else(|| "expected a number from 0 to 1".into())
+}
+
 impl ViewArgs {
     /// The view of `scene`; `panorama_is_given` says that it has a panorama of the user's.
     ///
@@ -105,6 +113,7 @@ impl ViewArgs {
             exposure_ev: self.look.exposure,
             tone_map: self.look.tone_map,
             background,
+            background_blur: self.look.background_blur,
             energy_compensation: self.look.energy_compensation == Switch::On,
             geometry: self.look.geometry,
             quality: self.look.quality,
@@ -123,6 +132,14 @@ mod tests {
         assert_eq!(parse_size("640x480").unwrap(), UVec2::new(640, 480));
         for bad in ["640", "0x1", "1x0", "x", "-1x5", "99999x1", "1x1x1"] {
             assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn blurs_parse() {
+        assert_eq!([parse_blur("0"), parse_blur("0.25"), parse_blur("1")], [Ok(0.0), Ok(0.25), Ok(1.0)]);
+        for bad in ["-0.1", "1.01", "NaN", "inf", "", "much"] {
+            assert!(parse_blur(bad).is_err(), "{bad}");
         }
     }
 

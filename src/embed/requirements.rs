@@ -22,11 +22,12 @@ pub struct Degraded {
     pub instead: &'static str,
 }
 
-const WITHOUT: [(wgpu::Features, &str); 5] = [
+const WITHOUT: [(wgpu::Features, &str); 6] = [
     (wgpu::Features::TEXTURE_FORMAT_16BIT_NORM, "tables are half floats: an error of 1e-4 instead of 4e-5"),
     (wgpu::Features::PRIMITIVE_INDEX, "every frame takes the forward path"),
     (wgpu::Features::FLOAT32_BLENDABLE, "radiance is stored in half floats"),
     (wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, "float targets have one sample a pixel"),
+    (wgpu::Features::POLYGON_MODE_LINE, "no view of edges"),
     (wgpu::Features::TIMESTAMP_QUERY, "frames are timed by the processor's clock"),
 ];
 
@@ -97,7 +98,7 @@ mod tests {
         let without = Requirements::of(wgpu::Features::empty(), &limits, Precision::Float);
         assert_eq!((without.features, without.degraded.len()), (wgpu::Features::empty(), WITHOUT.len()));
         // Targets of half floats need less.
-        assert_eq!(Requirements::of(wgpu::Features::empty(), &limits, Precision::Half).degraded.len(), 3);
+        assert_eq!(Requirements::of(wgpu::Features::empty(), &limits, Precision::Half).degraded.len(), 4);
         let unnamed = all - WITHOUT.iter().fold(wgpu::Features::empty(), |named, (feature, _)| named | *feature);
         assert_eq!(unnamed, wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS, "they come with the other timestamps");
     }

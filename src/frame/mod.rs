@@ -17,4 +17,4 @@ pub use cull::{Culling, clip_from_origin};
 pub use drawables::{Drawable, Drawables, PlacedInstance, Placements};
 pub use identity::PrimitivePlace;
 pub use path::{RenderPath, are_small, is_deferrable, is_worth_deferring, rectangle_around};
-pub use plan::{Culled, Draw, FramePlan, PipelineKey, PlanOptions, Planner, forward_features, plan};
+pub use plan::{Culled, Draw, FramePlan, PipelineKey, PlanOptions, Planner, Raster, forward_features, plan};

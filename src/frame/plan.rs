@@ -3,7 +3,7 @@
 use super::cull::{Culling, Frustum, Seen, clip_from_origin};
 use super::depth_order::DepthOrder;
 use super::drawables::{Drawable, Drawables};
-use crate::scene::{Background, Topology, View};
+use crate::scene::{Background, Channel, Topology, View};
 use crate::shader::{ForwardFeatures, SceneFeatures};
 use glam::Vec3;
 use std::fmt;
@@ -16,6 +16,37 @@ pub struct PipelineKey {
     /// Front faces are clockwise: the transform mirrors.
     pub mirrored: bool,
     pub cull_back: bool,
+    pub raster: Raster,
+}
+
+/// Which fragments a pipeline makes, and what becomes of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Raster {
+    /// As the material says: the nearest surfaces, blended ones over them.
+    Surface,
+    /// All of them, hidden or not, added up.
+    Layers,
+    /// Depth and coverage alone, a little behind the [`Self::Edges`] that are drawn over them.
+    Behind,
+    /// Those on the edges of triangles.
+    Edges,
+}
+
+impl Raster {
+    fn of(view: &View, topology: Topology) -> Self {
+        match view.channel {
+            Some(Channel::Overdraw) => Self::Layers,
+            Some(Channel::Wireframe) if topology == Topology::Triangles => Self::Behind,
+            _ => Self::Surface,
+        }
+    }
+}
+
+impl PipelineKey {
+    /// What is drawn over this, once all is drawn.
+    pub fn edges(self) -> Option<Self> {
+        (self.raster == Raster::Behind).then_some(Self { raster: Raster::Edges, ..self })
+    }
 }
 
 /// One draw call.
@@ -111,6 +142,8 @@ struct ForwardFeaturesOfView {
     quality: crate::scene::Quality,
     term: Option<crate::scene::Term>,
     channel: bool,
+    /// Of triangles, and of lines and points.
+    rasters: [Raster; 2],
 }
 
 impl ForwardFeaturesOfView {
@@ -122,11 +155,12 @@ impl ForwardFeaturesOfView {
             quality: view.quality,
             term: view.term,
             channel: view.channel.is_some(),
+            rasters: [Topology::Triangles, Topology::Points].map(|topology| Raster::of(view, topology)),
         }
     }
 
     fn key(self, drawable: &Drawable) -> PipelineKey {
-        let Self { scene, energy_compensation, geometry, quality, term, channel } = self;
+        let Self { scene, energy_compensation, geometry, quality, term, channel, rasters } = self;
         let is_filled = drawable.topology == Topology::Triangles;
         let features = ForwardFeatures {
             scene,
@@ -140,7 +174,8 @@ impl ForwardFeaturesOfView {
             channel,
         };
         let cull_back = !features.material.double_sided && is_filled;
-        PipelineKey { features, mirrored: drawable.mirrored && is_filled, cull_back }
+        let raster = rasters[usize::from(!is_filled)];
+        PipelineKey { features, mirrored: drawable.mirrored && is_filled, cull_back, raster }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
 
 use crate::shader::{
-    LightList, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING,
+    Backdrop, LightList, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING,
     SceneFeatures, Shading, disney_binding, material_texture_binding,
 };
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
@@ -73,9 +73,18 @@ pub fn material_entries(features: &MaterialFeatures) -> Vec<BindGroupLayoutEntry
     entries
 }
 
-/// The panorama behind the scene: uniform, texture, sampler.
-pub fn background_entries() -> Vec<BindGroupLayoutEntry> {
-    vec![buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform), texture(1, true), sampler(2)]
+/// The panorama behind the scene: uniform, texture, sampler; blurred, what shading reads of the environment.
+pub fn background_entries(backdrop: Backdrop) -> Vec<BindGroupLayoutEntry> {
+    let uniform = buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform);
+    match backdrop {
+        Backdrop::Sharp => vec![uniform, texture(1, true), sampler(2)],
+        Backdrop::Blurred => vec![
+            uniform,
+            sampler(FRAME_SAMPLER),
+            buffer(FRAME_ENVIRONMENT, ShaderStages::FRAGMENT, BufferBindingType::Uniform),
+            texture(FRAME_ATLAS, true),
+        ],
+    }
 }
 
 /// Group 1 of the visibility pass: the draw.
@@ -119,8 +128,8 @@ pub fn material_layout(device: &Device, features: &MaterialFeatures) -> BindGrou
 }
 
 /// The layout of [`background_entries`].
-pub fn background_layout(device: &Device) -> BindGroupLayout {
-    layout(device, "background", &background_entries())
+pub fn background_layout(device: &Device, backdrop: Backdrop) -> BindGroupLayout {
+    layout(device, "background", &background_entries(backdrop))
 }
 
 /// The layout of [`display_entries`].

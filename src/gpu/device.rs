@@ -56,7 +56,8 @@ pub fn usable_features(precision: Precision) -> wgpu::Features {
         }
     };
     let timestamps = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS;
-    float_target | timestamps | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM | wgpu::Features::PRIMITIVE_INDEX
+    let lines = wgpu::Features::POLYGON_MODE_LINE;
+    float_target | timestamps | lines | wgpu::Features::TEXTURE_FORMAT_16BIT_NORM | wgpu::Features::PRIMITIVE_INDEX
 }
 
 /// What a device is asked for: the limits that every WebGPU device has, but textures and buffers as large as the adapter

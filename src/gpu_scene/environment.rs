@@ -34,6 +34,32 @@ pub struct Panorama {
     pub(crate) scale: f32,
 }
 
+/// The same radiance from everywhere, 1 cd/m2, for scenes with any environment to be drawn in.
+#[derive(Debug)]
+pub(crate) struct WhiteFurnace {
+    pub(crate) atlas: wgpu::TextureView,
+    pub(crate) uniform: wgpu::Buffer,
+}
+
+impl WhiteFurnace {
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, UploadError> {
+        let mut staging = Staging::new(device, queue);
+        // Wherever a lookup falls, it finds this texel.
+        let (atlas, scale) = upload(device, &mut staging, "white furnace", 1, 1, &[Vec3::ONE])?;
+        staging.finish();
+        let mut irradiance_over_pi = [[0.0; 4]; 9];
+        irradiance_over_pi[0] = [1.0; 4];
+        let uniform = EnvironmentUniform {
+            irradiance_over_pi,
+            atlas: [1.0; 4],
+            environment_from_world: columns(DMat3::IDENTITY),
+            radiance_scale: scale,
+            ..Default::default()
+        };
+        Ok(Self { atlas, uniform: uniform_buffer(device, &uniform) })
+    }
+}
+
 impl GpuEnvironment {
     /// With the textures of the `previous` one, if that was made of the same image and maps.
     pub(crate) fn new(
@@ -53,11 +79,7 @@ impl GpuEnvironment {
         };
         let sides = tile_sides(maps)?;
         let contents = uniform(environment, maps, scale, sides);
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("environment"),
-            contents: bytemuck::bytes_of(&contents),
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        });
+        let uniform = uniform_buffer(device, &contents);
         Ok(Self {
             atlas,
             atlas_scale: scale,
@@ -98,6 +120,14 @@ impl GpuEnvironment {
         self.panorama = Some(panorama.clone());
         Ok(panorama)
     }
+}
+
+fn uniform_buffer(device: &wgpu::Device, contents: &EnvironmentUniform) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("environment"),
+        contents: bytemuck::bytes_of(contents),
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+    })
 }
 
 fn environment_from_world(environment: &Environment) -> DMat3 {

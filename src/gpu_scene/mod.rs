@@ -21,8 +21,8 @@ use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
 use wgpu::util::DeviceExt;
 
-pub(crate) use environment::GpuEnvironment;
 pub use environment::Panorama;
+pub(crate) use environment::{GpuEnvironment, WhiteFurnace};
 pub(crate) use lights::GpuClusters;
 use lights::GpuLights;
 use materials::GpuMaterial;
@@ -198,13 +198,15 @@ impl GpuScene {
         }
     }
 
-    /// Group 0 of the forward pass, with the uniform of one view, its list of visible instances and its clusters.
+    /// Group 0 of the forward pass, with the uniform of one view, its list of visible instances and its clusters; and with
+    /// the `furnace` in place of the environment, if there is one.
     pub(crate) fn frame_group(
         &self,
         device: &wgpu::Device,
         shared: &SharedTextures,
         (frame, visible): (&wgpu::Buffer, &wgpu::Buffer),
         clusters: Option<&GpuClusters>,
+        furnace: Option<&WhiteFurnace>,
     ) -> wgpu::BindGroup {
         let mut entries = vec![
             entry(bindings::FRAME_UNIFORM, frame.as_entire_binding()),
@@ -223,8 +225,10 @@ impl GpuScene {
             entries.push(entry(bindings::FRAME_CLUSTER_TABLE, clusters.table.as_entire_binding()));
         }
         if let Some(environment) = &self.environment {
-            entries.push(entry(bindings::FRAME_ENVIRONMENT, environment.uniform.as_entire_binding()));
-            entries.push(entry(bindings::FRAME_ATLAS, wgpu::BindingResource::TextureView(&environment.atlas)));
+            let own = (&environment.uniform, &environment.atlas);
+            let (uniform, atlas) = furnace.map_or(own, |furnace| (&furnace.uniform, &furnace.atlas));
+            entries.push(entry(bindings::FRAME_ENVIRONMENT, uniform.as_entire_binding()));
+            entries.push(entry(bindings::FRAME_ATLAS, wgpu::BindingResource::TextureView(atlas)));
             entries.push(entry(bindings::FRAME_TAPS, wgpu::BindingResource::TextureView(&shared.taps)));
         }
         if self.features.is_lit() && self.features.fresnel_tail {

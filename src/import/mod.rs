@@ -26,6 +26,7 @@ mod openexr;
 mod picture;
 mod references;
 mod resources;
+mod sketch;
 mod tangents;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -70,13 +71,16 @@ pub struct ImportOptions<'a> {
     /// Leaves out the textures that materials have but never sample: normal maps of unlit ones, emission times zero.
     /// Materials must not change after that.
     pub sampled_textures_only: bool,
-    /// Told of the stages "read", "decode images" and "build geometry".
+    /// Told of the stages "read", "build geometry" and "decode images".
     pub progress: &'a dyn Progress,
+    /// Given the scene of a model with images before they are decoded: each is a few texels of half the light, of no metal
+    /// and no relief. Nobody knows yet whether the model can be imported.
+    pub sketch: Option<&'a (dyn Fn(Scene) + Sync)>,
 }
 
 impl Default for ImportOptions<'_> {
     fn default() -> Self {
-        Self { scene: None, limits: Limits::default(), sampled_textures_only: false, progress: &Silent }
+        Self { scene: None, limits: Limits::default(), sampled_textures_only: false, progress: &Silent, sketch: None }
     }
 }
 
@@ -185,20 +189,23 @@ fn import_model(
     let buffers = Buffers::load(root, container.binary, &resources)?;
     let accessors = Accessors { root, buffers: &buffers, budget: &budget, limits: &options.limits };
     instancing::import(&accessors, &mut nodes, notes)?;
-    let images = images::import(&accessors, &resources, &textures.images, options.progress)?;
     let meshes = build_meshes(&accessors, &materials, options.progress, notes)?;
-    let scene = Scene {
+    let mut scene = Scene {
         name: chosen.name,
         nodes,
         roots: chosen.roots,
         meshes,
         materials,
         textures: textures.textures,
-        images,
+        images: Vec::new(),
         cameras,
         lights,
         environment: None,
     };
+    if let (Some(give), false) = (options.sketch, textures.images.is_empty()) {
+        give(Scene { images: sketch::images(&scene, textures.images.len()), ..scene.clone() });
+    }
+    scene.images = images::import(&accessors, &resources, &textures.images, options.progress)?;
     let scene_names = root.scenes.iter().map(|scene| scene.name.clone()).collect();
     let extensions_used = root.extensions_used.clone();
     Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index, extensions_used })

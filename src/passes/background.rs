@@ -1,11 +1,13 @@
 //! The panorama, drawn where no surface is.
 
 use crate::gpu::KeptUniform;
-use crate::gpu::bindings::background_layout;
+use crate::gpu::bindings::{FRAME_ATLAS, FRAME_ENVIRONMENT, FRAME_SAMPLER, background_layout};
 use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
-use crate::gpu_scene::{Panorama, entry};
+use crate::gpu_scene::entry;
 use crate::shader::types::BackgroundUniform;
-use crate::shader::{Composed, ShaderError, ShaderSources, TargetLight, background_module_into, create_module};
+use crate::shader::{
+    Backdrop, Composed, ShaderError, ShaderSources, TargetLight, background_module_into, create_module,
+};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -18,14 +20,24 @@ pub struct BackgroundTarget {
     pub light: TargetLight,
     /// Under what is there, by its coverage, and where the depth is the triangle's own; else behind what is nearer.
     pub under: bool,
+    pub backdrop: Backdrop,
+}
+
+/// What is seen.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BackgroundSource {
+    Panorama(wgpu::TextureView),
+    /// Uniform, prefiltered maps, and the sampler that shading has.
+    Environment(wgpu::Buffer, wgpu::TextureView, wgpu::Sampler),
 }
 
 /// The pipeline of the panorama, for each target.
 #[derive(Debug)]
 pub struct BackgroundPipeline {
-    layout: wgpu::BindGroupLayout,
+    sharp: wgpu::BindGroupLayout,
+    blurred: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    modules: HashMap<TargetLight, (Composed, wgpu::ShaderModule)>,
+    modules: HashMap<(Backdrop, TargetLight), (Composed, wgpu::ShaderModule)>,
     pipelines: HashMap<BackgroundTarget, wgpu::RenderPipeline>,
 }
 
@@ -46,7 +58,8 @@ impl BackgroundPipeline {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Self { layout: background_layout(device), sampler, modules: HashMap::new(), pipelines: HashMap::new() }
+        let [sharp, blurred] = [Backdrop::Sharp, Backdrop::Blurred].map(|backdrop| background_layout(device, backdrop));
+        Self { sharp, blurred, sampler, modules: HashMap::new(), pipelines: HashMap::new() }
     }
 
     /// Texts of the modules that were used.
@@ -59,23 +72,28 @@ impl BackgroundPipeline {
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         sources: &ShaderSources,
         target: BackgroundTarget,
-        panorama: &Panorama,
-        (uniform, kept): (&BackgroundUniform, &mut KeptUniform<wgpu::TextureView>),
+        source: BackgroundSource,
+        (uniform, kept): (&BackgroundUniform, &mut KeptUniform<BackgroundSource>),
     ) -> Result<BackgroundPass, ShaderError> {
         let pipeline = self.pipeline(device, sources, target)?;
-        let bind = |uniform: &wgpu::Buffer, view: &wgpu::TextureView| {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("background"),
-                layout: &self.layout,
-                entries: &[
-                    entry(0, uniform.as_entire_binding()),
-                    entry(1, wgpu::BindingResource::TextureView(view)),
-                    entry(2, wgpu::BindingResource::Sampler(&self.sampler)),
-                ],
-            })
+        let bind = |uniform: &wgpu::Buffer, source: &BackgroundSource| {
+            use wgpu::BindingResource::{Sampler, TextureView};
+            let view = entry(0, uniform.as_entire_binding());
+            let (layout, entries) = match source {
+                BackgroundSource::Panorama(panorama) => {
+                    (&self.sharp, vec![view, entry(1, TextureView(panorama)), entry(2, Sampler(&self.sampler))])
+                }
+                BackgroundSource::Environment(environment, atlas, sampler) => {
+                    let environment = entry(FRAME_ENVIRONMENT, environment.as_entire_binding());
+                    let maps = [entry(FRAME_ATLAS, TextureView(atlas)), entry(FRAME_SAMPLER, Sampler(sampler))];
+                    (&self.blurred, [vec![view, environment], maps.into()].concat())
+                }
+            };
+            let label = Some("background");
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
         };
         let contents = bytemuck::bytes_of(uniform);
-        let group = kept.group((device, queue), "background", contents, panorama.view.clone(), bind);
+        let group = kept.group((device, queue), "background", contents, source, bind);
         let instances = match (target.under, target.depth.reversed) {
             (true, _) => 0..2,
             (false, true) => 0..1,
@@ -94,12 +112,13 @@ impl BackgroundPipeline {
         if let Some(pipeline) = self.pipelines.get(&target) {
             return Ok(pipeline.clone());
         }
-        let module = match self.modules.get(&target.light) {
+        let key = (target.backdrop, target.light);
+        let module = match self.modules.get(&key) {
             Some((_, module)) => module.clone(),
             None => {
-                let composed = background_module_into(sources, target.light)?;
+                let composed = background_module_into(sources, target.backdrop, target.light)?;
                 let module = create_module(device, "background", &composed)?;
-                self.modules.insert(target.light, (composed, module.clone()));
+                self.modules.insert(key, (composed, module.clone()));
                 module
             }
         };
@@ -114,7 +133,11 @@ impl BackgroundPipeline {
             depth: if target.under { FullscreenDepth::Equal } else { FullscreenDepth::Behind(target.depth) },
             blend: target.under.then_some(wgpu::BlendState { color: component, alpha: component }),
         };
-        let pipeline = fullscreen_pipeline(device, "background", &[Some(&self.layout)], &module, into);
+        let layout = match target.backdrop {
+            Backdrop::Sharp => &self.sharp,
+            Backdrop::Blurred => &self.blurred,
+        };
+        let pipeline = fullscreen_pipeline(device, "background", &[Some(layout)], &module, into);
         self.pipelines.insert(target, pipeline.clone());
         Ok(pipeline)
     }

@@ -1,6 +1,6 @@
 //! Surfaces: every draw with the shader of its features.
 
-use crate::frame::{Draw, FramePlan, PipelineKey};
+use crate::frame::{Draw, FramePlan, PipelineKey, Raster};
 use crate::gpu::pipeline::{DepthTarget, depth_state, primitive_state};
 use crate::gpu_scene::{GpuDraw, GpuScene};
 use crate::scene::Topology;
@@ -50,13 +50,13 @@ impl ForwardPipelines {
         plan: &FramePlan,
         target: ForwardTarget,
     ) -> Result<(), ShaderError> {
-        for key in &plan.pipelines {
-            if self.pipelines.contains_key(&(*key, target)) {
+        for key in plan.pipelines.iter().flat_map(|key| [Some(*key), key.edges()]).flatten() {
+            if self.pipelines.contains_key(&(key, target)) {
                 continue;
             }
             let module = self.module(device, sources, &key.features, target.light)?;
-            let pipeline = create_pipeline(device, &module, scene, key, (target, self.cache.as_ref()));
-            self.pipelines.insert((*key, target), pipeline);
+            let pipeline = create_pipeline(device, &module, scene, &key, (target, self.cache.as_ref()));
+            self.pipelines.insert((key, target), pipeline);
         }
         Ok(())
     }
@@ -99,6 +99,15 @@ impl ForwardPipelines {
         target: ForwardTarget,
     ) -> impl Iterator<Item = Option<wgpu::RenderPipeline>> {
         plan.pipelines.iter().map(move |key| self.pipelines.get(&(*key, target)).cloned())
+    }
+
+    /// Those of the edges that are drawn over them; of most plans there are none.
+    pub fn edges_of_plan(
+        &self,
+        plan: &FramePlan,
+        target: ForwardTarget,
+    ) -> impl Iterator<Item = Option<wgpu::RenderPipeline>> {
+        plan.pipelines.iter().map(move |key| self.pipelines.get(&(key.edges()?, target)).cloned())
     }
 }
 
@@ -155,8 +164,6 @@ fn create_pipeline(
         .collect();
     let buffers: Vec<Option<wgpu::VertexBufferLayout<'_>>> =
         vertex_attributes.iter().map(|attribute| Some(buffer_layout(attribute))).collect();
-    // Of a channel the nearest surface counts, however little it covers.
-    let blended = key.features.material.alpha == Alpha::Blend && !key.features.channel;
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(&format!("forward/{}", key.features)),
         layout: Some(&layout),
@@ -166,8 +173,14 @@ fn create_pipeline(
             compilation_options: Default::default(),
             buffers: &buffers,
         },
-        primitive: primitive_state(topology(key), key.mirrored, key.cull_back),
-        depth_stencil: Some(depth_state(target.depth, !blended)),
+        primitive: wgpu::PrimitiveState {
+            polygon_mode: match key.raster {
+                Raster::Edges => wgpu::PolygonMode::Line,
+                _ => wgpu::PolygonMode::Fill,
+            },
+            ..primitive_state(topology(key), key.mirrored, key.cull_back)
+        },
+        depth_stencil: Some(depth_test(key, target.depth)),
         multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,
@@ -175,13 +188,55 @@ fn create_pipeline(
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: target.format,
-                blend: blended.then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
+                blend: blend_state(key),
+                write_mask: match key.raster {
+                    Raster::Behind => wgpu::ColorWrites::ALPHA,
+                    _ => wgpu::ColorWrites::ALL,
+                },
             })],
         }),
         multiview_mask: None,
         cache,
     })
+}
+
+/// Of a channel the nearest surface counts, however little it covers.
+fn is_blended(key: &PipelineKey) -> bool {
+    key.features.material.alpha == Alpha::Blend && !key.features.channel
+}
+
+fn blend_state(key: &PipelineKey) -> Option<wgpu::BlendState> {
+    let one_and_one = |operation| wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation,
+    };
+    match key.raster {
+        Raster::Layers => Some(wgpu::BlendState {
+            color: one_and_one(wgpu::BlendOperation::Add),
+            alpha: one_and_one(wgpu::BlendOperation::Max),
+        }),
+        _ => is_blended(key).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+    }
+}
+
+fn depth_test(key: &PipelineKey, target: DepthTarget) -> wgpu::DepthStencilState {
+    let nearest = depth_state(target, !is_blended(key));
+    match key.raster {
+        Raster::Layers => wgpu::DepthStencilState {
+            depth_write_enabled: Some(false),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            ..nearest
+        },
+        Raster::Behind => {
+            // The samples of a line are up to half a pixel beside the edge along either axis, where the surface is
+            // nearer by no more than its slope. The constant is for surfaces that face the viewer.
+            let away = if target.reversed { -1 } else { 1 };
+            let bias = wgpu::DepthBiasState { constant: 8 * away, slope_scale: 1.5 * away as f32, clamp: 0.0 };
+            wgpu::DepthStencilState { bias, ..nearest }
+        }
+        Raster::Surface | Raster::Edges => nearest,
+    }
 }
 
 fn topology(key: &PipelineKey) -> wgpu::PrimitiveTopology {

@@ -6,7 +6,7 @@ mod display;
 mod forward;
 mod present;
 
-pub use background::{BackgroundPass, BackgroundPipeline, BackgroundTarget};
+pub use background::{BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget};
 pub use deferred::{DeferredGroups, DeferredPass, DeferredPipelines, DeferredTarget};
 pub use display::{DisplayPass, DisplayPipelines};
 pub use forward::{ForwardPipelines, ForwardTarget, draw};

@@ -5,9 +5,13 @@ use super::disney::specular_f0;
 use super::geometry::{Hit, Ray};
 use super::integrator::{Estimated, Lighting};
 use super::render::{camera_ray, composite};
+use super::sampling::PixelSampler;
 use super::surface::{Details, Layer, Surface, World};
 use crate::scene::{Scene, View};
 use glam::{DVec2, DVec3, DVec4, UVec2};
+
+/// Of a background that is blurred.
+const BLUR_SAMPLES: u32 = 4096;
 
 /// A scene and a view whose pixels can be looked into.
 #[derive(Debug)]
@@ -104,9 +108,14 @@ impl<'a> Inspector<'a> {
         }
     }
 
-    /// Radiance of the environment along the ray, cd/m2.
+    /// Radiance of the background's environment along the ray, cd/m2; an estimate, where it is blurred.
     pub fn background(&self, ray: &Ray) -> DVec3 {
-        self.lighting.environment_radiance(ray.direction)
+        let samples = if self.view.background_blur > 0.0 { BLUR_SAMPLES } else { 1 };
+        let sampler = PixelSampler::new(0, 0, 0);
+        let blur = f64::from(self.view.background_blur);
+        let draws = |index| [0, 1].map(|dimension| sampler.pair(index, dimension));
+        let sample = |index| self.lighting.blurred_radiance(ray.direction, blur, draws(index));
+        (0..samples).map(sample).sum::<DVec3>() / f64::from(samples)
     }
 
     /// The pixel: what each layer sends to the eye, over one another and over the background, multiplied with the

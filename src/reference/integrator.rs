@@ -2,6 +2,7 @@
 
 #![expect(non_snake_case, reason = "equations keep the symbols of their papers")]
 
+mod backdrop;
 mod parts;
 mod path;
 

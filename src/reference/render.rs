@@ -34,6 +34,8 @@ impl std::fmt::Debug for ReferenceOptions<'_> {
 /// Dimensions of the sampler: the place in the pixel, then three for each layer of surfaces.
 const PIXEL_DIMENSION: u32 = 0;
 const DIMENSIONS_PER_LAYER: u32 = 3;
+/// Of a blurred background: no layer is so deep.
+const BACKGROUND_DIMENSIONS: [u32; 2] = [u32::MAX - 2, u32::MAX - 1];
 
 /// Renders `scene` as docs/model.md defines it: box filter, no shadows, no interreflection.
 pub fn render(scene: &Scene, view: &View, options: &ReferenceOptions) -> RadianceImage {
@@ -90,7 +92,10 @@ impl<'a> Tracer<'a> {
             .iter()
             .zip(0..)
             .map(|(layer, depth)| (layer.alpha, self.layer(&layer.hit, &ray, (sampler, index, depth))));
-        composite(self.view.background, sent, || self.lighting.environment_radiance(ray.direction))
+        composite(self.view.background, sent, || {
+            let draws = BACKGROUND_DIMENSIONS.map(|dimension| sampler.pair(index, dimension));
+            self.lighting.blurred_radiance(ray.direction, f64::from(self.view.background_blur), draws)
+        })
     }
 
     /// Radiance that one of the surfaces along the ray sends back.

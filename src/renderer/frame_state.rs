@@ -5,7 +5,7 @@ use super::paint::Painting;
 use crate::frame::{Culling, FramePlan, PlanOptions, Planner};
 use crate::gpu::{Identity, KeptUniform};
 use crate::gpu_scene::GpuScene;
-use crate::passes::DeferredGroups;
+use crate::passes::{BackgroundSource, DeferredGroups};
 use crate::scene::View;
 use glam::UVec2;
 use std::sync::Arc;
@@ -24,9 +24,9 @@ pub struct FrameState {
     /// The scene that the rest is about.
     scene: Option<Identity>,
     visible: Option<VisibleList>,
-    /// Beside the uniform: instances, which of them are visible, and clusters of lights.
-    pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer, Option<wgpu::Buffer>)>,
-    pub(super) background: KeptUniform<wgpu::TextureView>,
+    /// Beside the uniform: instances, which of them are visible, clusters of lights, and whether the furnace is bound.
+    pub(super) frame: KeptUniform<(wgpu::Buffer, wgpu::Buffer, Option<wgpu::Buffer>, bool)>,
+    pub(super) background: KeptUniform<BackgroundSource>,
     pub(super) display: KeptUniform<wgpu::TextureView>,
     pub(super) deferred: Option<DeferredGroups>,
     pub(super) painting: Option<Painting>,

@@ -1,11 +1,12 @@
 //! A frame inside a pass that somebody else has begun.
 
+use super::draws::{PlanPipelines, draw_plan};
 use super::uniforms::frame_uniform;
 use super::{FrameState, FrameStats, PassFormat, RenderError, Renderer, check_size, frame_stats};
 use crate::frame::{PlanOptions, clip_from_origin};
 use crate::gpu::Identity;
 use crate::gpu_scene::GpuScene;
-use crate::passes::{BackgroundPass, draw};
+use crate::passes::BackgroundPass;
 use crate::scene::View;
 use glam::UVec2;
 
@@ -14,7 +15,7 @@ use glam::UVec2;
 pub(super) struct Painting {
     scene: Identity,
     frame_group: wgpu::BindGroup,
-    pipelines: Vec<Option<wgpu::RenderPipeline>>,
+    pipelines: PlanPipelines,
     panorama: Option<BackgroundPass>,
     at_px: UVec2,
     size_px: UVec2,
@@ -50,16 +51,16 @@ impl Renderer {
         let mut pipelines = state.painting.take().map(|painting| painting.pipelines).unwrap_or_default();
         check_size(device, view)?;
         let target = pass.forward_target(device, view)?;
+        self.check_channel(device, scene, view, target.format)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
         let visible = state.plan_frame((device, queue), scene, view, options);
         let panorama = self.panorama((device, queue), scene, view, (target, false), state)?;
         let mut uniform = frame_uniform(scene, view);
         let own = clip_from_origin(view, scene.drawables.origin_in_world);
         uniform.clip_from_world = pass.clip(&view.camera, own).to_cols_array_2d();
-        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
+        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
         self.forward.prepare(device, &self.sources, scene, &state.plan, target)?;
-        pipelines.clear();
-        pipelines.extend(self.forward.of_plan(&state.plan, target));
+        pipelines.replace(self, view, &state.plan, target);
         let identity = scene.identity.clone();
         let size_px = view.size_px;
         state.painting = Some(Painting { scene: identity, frame_group, pipelines, panorama, at_px, size_px });
@@ -83,11 +84,7 @@ impl Prepared<'_> {
         let Painting { frame_group, pipelines, panorama, at_px, size_px, .. } = self.painting;
         let (at, size) = (at_px.as_vec2(), size_px.as_vec2());
         pass.set_viewport(at.x, at.y, size.x, size.y, 0.0, 1.0);
-        draw(pass, pipelines, self.scene, frame_group, &self.state.plan.opaque);
-        if let Some(panorama) = panorama {
-            panorama.draw(pass);
-        }
-        draw(pass, pipelines, self.scene, frame_group, &self.state.plan.blended);
+        draw_plan(pass, pipelines, self.scene, frame_group, (&self.state.plan, panorama.as_ref()));
     }
 
     /// What the frame consists of.

@@ -2,6 +2,7 @@
 
 use crate::frame::clip_from_origin;
 use crate::gpu_scene::GpuScene;
+use crate::math::blur::mean_cosine;
 use crate::math::color::linear_from_srgb;
 use crate::scene::{Background, Channel, LightSource, Projection, ToneMap, View};
 use crate::shader::channel_uniform;
@@ -51,7 +52,8 @@ pub(super) fn background_uniform(view: &View, environment_from_world: DMat3, rad
             .map(|column| column.extend(0.0).as_vec4().to_array()),
         radiance_scale,
         exposure: exposure(view),
-        ..Default::default()
+        perceptual_roughness: view.background_blur,
+        sun_scale: (0.25 / mean_cosine(f64::from(view.background_blur).powi(2))) as f32,
     }
 }
 

@@ -166,6 +166,17 @@ pub enum Channel {
     /// How many punctual lights are looked at for the surface: those that its place in the view lists, whether or not they
     /// reach it.
     LightCount,
+    /// A chequered pattern over the first set of texture coordinates that the material reads, colours in [0, 1]: eight
+    /// squares to a unit, each with a hue of its place. Grey where no set is read.
+    UvChecker,
+    /// The share of light, in [0, 1] if nothing is gained, that the surface returns to the eye where the same radiance comes
+    /// from everywhere and nothing else shines: what its lobes, their lookups of the environment and its occlusion leave of
+    /// it. Zero on unlit surfaces. The scene needs an environment, whichever: surfaces that nothing lights have no lobes.
+    Furnace,
+    /// How many surfaces are drawn over each other, hidden ones too: what would be shaded if nothing was sorted or tested.
+    Overdraw,
+    /// 1 on the edges of triangles that no surface hides, on lines and on points; 0 between them.
+    Wireframe,
     /// Faults of the radiance before it is clamped: red is 1 where it is no number, green where it is infinite, blue
     /// where it is negative.
     Nan,
@@ -182,6 +193,10 @@ impl Channel {
             radiance("ibl-diffuse", Environment, Components::DIFFUSE),
             radiance("ibl-specular", Environment, Components::SPECULAR),
             ("light-count", Self::LightCount),
+            ("uv-checker", Self::UvChecker),
+            ("furnace", Self::Furnace),
+            ("overdraw", Self::Overdraw),
+            ("wireframe", Self::Wireframe),
             ("nan", Self::Nan),
         ];
         Input::ALL.into_iter().map(|input| (input.name(), Self::Input(input))).chain(light)
@@ -201,7 +216,7 @@ mod tests {
     #[test]
     fn every_channel_has_a_name_of_its_own() {
         let names: BTreeSet<_> = Channel::named().map(|(name, _)| name).collect();
-        assert_eq!(names.len(), Input::ALL.len() + 6);
+        assert_eq!(names.len(), Input::ALL.len() + 10);
         assert!(Channel::named().all(|(name, channel)| Channel::by_name(name) == Some(channel)));
         assert_eq!(Channel::by_name("radiance"), None);
     }

@@ -103,6 +103,7 @@ pub fn default_view(scene: &Scene, size_px: UVec2) -> View {
         exposure_ev: 0.0,
         tone_map: ToneMap::default(),
         background: Background::Color(Vec3::splat(0.16)),
+        background_blur: 0.0,
         energy_compensation: true,
         geometry: Geometry::default(),
         quality: Default::default(),

@@ -196,6 +196,9 @@ pub struct View {
     pub exposure_ev: f32,
     pub tone_map: ToneMap,
     pub background: Background,
+    /// The environment as background is seen through the lobe that its maps are prefiltered with, of this perceptual
+    /// roughness, in [0, 1]; 0 is sharp.
+    pub background_blur: f32,
     /// Give back the energy that single-scattering microfacet models lose (Kulla and Conty 2017).
     pub energy_compensation: bool,
     /// For punctual lights; the tables that light from the environment is read through hold the default.

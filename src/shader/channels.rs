@@ -12,6 +12,8 @@ const SKY: u32 = 103;
 const SUN: u32 = 104;
 const NAN: u32 = 105;
 const LIGHT_COUNT: u32 = 106;
+const UV_CHECKER: u32 = 107;
+const DRAWN: u32 = 108;
 
 /// `channel`, `channel_index` and `channel_components` of the frame's uniform.
 pub fn channel_uniform(channel: Channel) -> [u32; 3] {
@@ -28,13 +30,18 @@ pub fn channel_uniform(channel: Channel) -> [u32; 3] {
             [number, index, components.bits()]
         }
         Channel::LightCount => [LIGHT_COUNT, 0, 0],
+        Channel::UvChecker => [UV_CHECKER, 0, 0],
+        // The environment is another then.
+        Channel::Furnace => [ENVIRONMENT, 0, Components::ALL.bits()],
+        // What is drawn where is for the pipelines to say.
+        Channel::Overdraw | Channel::Wireframe => [DRAWN, 0, 0],
         Channel::Nan => [NAN, 0, 0],
     }
 }
 
 /// The `<channels>` slot: the numbers, and `channel`, which finds what they stand for.
 pub(super) fn channels(features: &ForwardFeatures) -> String {
-    let mut text = String::from("#import <radiance_channel>\n\n");
+    let mut text = String::from("#import <radiance_channel>\n#import \"channel/checker.wgsl\"\n\n");
     let numbers = [
         ("PUNCTUAL", PUNCTUAL),
         ("LIGHT", LIGHT),
@@ -43,6 +50,8 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
         ("SUN", SUN),
         ("NAN", NAN),
         ("LIGHT_COUNT", LIGHT_COUNT),
+        ("UV_CHECKER", UV_CHECKER),
+        ("DRAWN", DRAWN),
     ];
     // Writing to a String cannot fail.
     for (name, number) in numbers {
@@ -56,8 +65,11 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
         let value = expression(input, &features.material, &features.vertex);
         let _ = writeln!(text, "        case {}u: {{\n            return {value};\n        }}", input as u32);
     }
+    let checker = features.vertex.uv_sets().next().map_or("vec3f(0.5)".into(), |set| format!("checker(v.uv_{set})"));
+    let _ = writeln!(text, "        case CHANNEL_UV_CHECKER: {{\n            return {checker};\n        }}");
     text.push_str(
-        "        case CHANNEL_NAN: {\n            return faults(shade(surface, v.position_in_world));\n        }\n        \
+        "        case CHANNEL_DRAWN: {\n            return vec3f(1.0);\n        }\n        \
+         case CHANNEL_NAN: {\n            return faults(shade(surface, v.position_in_world));\n        }\n        \
          default: {\n            return radiance_channel(surface, v.position_in_world);\n        }\n    }\n}\n\n",
     );
     text.push_str(FAULTS);
@@ -159,7 +171,7 @@ mod tests {
         let all: Vec<[u32; 3]> = inputs
             .into_iter()
             .chain(radiance)
-            .chain([Channel::LightCount, Channel::Nan])
+            .chain([Channel::LightCount, Channel::UvChecker, Channel::Overdraw, Channel::Nan])
             .map(channel_uniform)
             .collect();
         assert_eq!(all.iter().map(|uniform| uniform[0]).collect::<BTreeSet<_>>().len(), all.len());

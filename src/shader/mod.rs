@@ -25,7 +25,7 @@ pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, disney_binding, material_texture_binding,
 };
 pub use modules::{
-    DisplayFeatures, TargetLight, background_module, background_module_into, covered_module, deferred_module,
+    Backdrop, DisplayFeatures, TargetLight, background_module, background_module_into, covered_module, deferred_module,
     display_module, forward_module, forward_module_into, forward_slots, present_module, visibility_module,
 };
 pub use pulled::{PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, texels_per_vertex};

@@ -257,14 +257,31 @@ fn visibility_anisotropic(geometry: Geometry) -> &'static str {
     }
 }
 
+/// How the panorama is seen behind the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Backdrop {
+    Sharp,
+    /// Through a lobe of its prefiltered maps.
+    Blurred,
+}
+
 /// The panorama behind the scene, into radiance.
-pub fn background_module(sources: &ShaderSources) -> Result<Composed, ShaderError> {
-    background_module_into(sources, TargetLight::Radiance)
+pub fn background_module(sources: &ShaderSources, backdrop: Backdrop) -> Result<Composed, ShaderError> {
+    background_module_into(sources, backdrop, TargetLight::Radiance)
 }
 
 /// The same into what a target holds.
-pub fn background_module_into(sources: &ShaderSources, light: TargetLight) -> Result<Composed, ShaderError> {
+pub fn background_module_into(
+    sources: &ShaderSources,
+    backdrop: Backdrop,
+    light: TargetLight,
+) -> Result<Composed, ShaderError> {
     let mut slots = target_slots(light, "background");
+    let file = match backdrop {
+        Backdrop::Sharp => "background/sharp.wgsl",
+        Backdrop::Blurred => "background/blurred.wgsl",
+    };
+    slots.insert("backdrop", Slot::File(file));
     slots.insert("types", Slot::Text(types::wgsl()));
     compose(sources, "pass/background.wgsl", &slots)
 }

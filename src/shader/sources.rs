@@ -14,6 +14,8 @@ pub(crate) use embedded;
 
 /// Every file under `shaders/` that a frame can be made of: its path there, and its text.
 pub const SOURCES: &[(&str, &str)] = embedded![
+    "background/blurred.wgsl",
+    "background/sharp.wgsl",
     "brdf/d_ggx.wgsl",
     "brdf/d_ggx_anisotropic.wgsl",
     "brdf/d_gtr1.wgsl",
@@ -29,6 +31,7 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "brdf/v_smith_ggx_correlated_anisotropic.wgsl",
     "brdf/v_smith_ggx_separable.wgsl",
     "channel/channel.wgsl",
+    "channel/checker.wgsl",
     "channel/lit.wgsl",
     "channel/lobes_disney.wgsl",
     "channel/lobes_standard.wgsl",

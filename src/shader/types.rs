@@ -151,8 +151,10 @@ gpu_struct! {
         radiance_scale: f32,
         /// Factor before the tone map, where the target holds display light.
         exposure: f32,
-        pad_0: f32,
-        pad_1: f32,
+        /// Of the lobe through which a blurred panorama is seen.
+        perceptual_roughness: f32,
+        /// That lobe, for a sun: D_GGX times the cosine times this integrates to 1.
+        sun_scale: f32,
     }
 }
 

@@ -5,8 +5,8 @@ mod tree;
 use crate::shaders::{display_features, forward_features, term_features};
 use specula::proof;
 use specula::shader::{
-    SOURCES, ShaderSources, TargetLight, background_module_into, covered_module, deferred_module, display_module,
-    forward_module, present_module, visibility_module,
+    Backdrop, SOURCES, ShaderSources, TargetLight, background_module_into, covered_module, deferred_module,
+    display_module, forward_module, present_module, visibility_module,
 };
 use std::collections::BTreeSet;
 use tree::{File, exists, files, names_after, read, words};
@@ -204,7 +204,9 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     modules.extend(forward.iter().map(|features| forward_module(&sources, features).unwrap()));
     modules.extend(display_features().into_iter().map(|features| display_module(&sources, features).unwrap()));
     let lights = display_features().into_iter().map(TargetLight::Display).chain([TargetLight::Radiance]);
-    modules.extend(lights.map(|light| background_module_into(&sources, light).unwrap()));
+    let backdrops = [Backdrop::Sharp, Backdrop::Blurred];
+    let backgrounds = lights.flat_map(|light| backdrops.map(|backdrop| (backdrop, light)));
+    modules.extend(backgrounds.map(|(backdrop, light)| background_module_into(&sources, backdrop, light).unwrap()));
     let deferred = forward.iter().step_by(50).map(|features| deferred_module(&sources, features, 4).unwrap());
     modules.extend(deferred.chain([covered_module(&sources, 4).unwrap(), visibility_module(&sources).unwrap()]));
     let used: BTreeSet<&str> = modules.iter().flat_map(|module| module.files()).collect();

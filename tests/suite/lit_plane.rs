@@ -272,6 +272,7 @@ fn view(geometry: Geometry) -> View {
         exposure_ev: 0.0,
         tone_map: ToneMap::None,
         background: Background::Transparent,
+        background_blur: 0.0,
         energy_compensation: true,
         geometry,
         // The truth here is the split sum; tests/suite/tiers.rs has the others.

@@ -4,6 +4,7 @@
 #![allow(clippy::duplicate_mod)]
 
 mod architecture;
+mod backdrop;
 mod bench;
 mod bench_suite;
 mod browser;
@@ -11,6 +12,7 @@ mod cache;
 mod cli;
 mod compare;
 mod culling;
+mod debug_views;
 mod disney;
 mod embed;
 mod features;

@@ -11,8 +11,8 @@ use specula::scene::{
     TextureSlot, ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
-    Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, Shading,
-    TargetLight, VertexFeatures, background_module, background_module_into, covered_module, deferred_module,
+    Backdrop, Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources,
+    Shading, TargetLight, VertexFeatures, background_module, background_module_into, covered_module, deferred_module,
     display_module, forward_module, forward_module_into, present_module, visibility_module,
 };
 use std::collections::BTreeMap;
@@ -196,11 +196,18 @@ fn modules_of_one_term_are_valid_and_use_nothing_that_is_not_bound() {
 #[test]
 fn the_other_passes_use_all_that_is_bound_and_nothing_else() {
     let sources = ShaderSources::default();
-    assert_eq!(used(&background_module(&sources).unwrap()), offered(&[background_entries()]));
     assert_eq!(used(&present_module(&sources).unwrap()), offered(&[present_entries()]));
     for features in display_features() {
-        let background = background_module_into(&sources, TargetLight::Display(features)).unwrap();
-        assert_eq!(used(&background), offered(&[background_entries()]), "{features:?}");
+        for backdrop in [Backdrop::Sharp, Backdrop::Blurred] {
+            let light = TargetLight::Display(features);
+            let backgrounds = [
+                background_module(&sources, backdrop).unwrap(),
+                background_module_into(&sources, backdrop, light).unwrap(),
+            ];
+            for background in backgrounds {
+                assert_eq!(used(&background), offered(&[background_entries(backdrop)]), "{backdrop:?} {features:?}");
+            }
+        }
         assert_eq!(used(&display_module(&sources, features).unwrap()), offered(&[display_entries()]), "{features:?}");
     }
 }

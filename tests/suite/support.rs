@@ -61,6 +61,7 @@ pub(crate) fn front_view(side_px: u32) -> View {
         exposure_ev: 0.0,
         tone_map: ToneMap::Neutral,
         background: Background::Transparent,
+        background_blur: 0.0,
         energy_compensation: true,
         geometry: Default::default(),
         quality: Default::default(),

@@ -88,6 +88,7 @@ fn materials_lights_and_views_are_edited() {
         vec![drop_file("sky.hdr")],
         key("P").into(),
         click("environment/rotation", 0.2).into(),
+        click("look/background-blur", 0.2).into(),
         click("part/Environment", 0.1).into(),
         click("part/Picture", 0.1).into(),
         click("part/File", 0.1).into(),
@@ -110,6 +111,7 @@ fn materials_lights_and_views_are_edited() {
     assert!(material["disney"]["clearcoat"].as_f64().unwrap() > 0.1, "{material}");
     assert!(state["environment"]["source"].as_str().unwrap().ends_with("sky.hdr"), "{state}");
     assert!(state["environment"]["rotation_deg"].as_f64().unwrap() > 1.0, "{state}");
+    assert!(state["look"]["background_blur"].as_f64().unwrap() > 0.05, "{state}");
     assert_eq!(state["hidden_nodes"], serde_json::json!([1]), "{state}");
     assert_eq!(state["look"]["quality"], "high");
 
@@ -170,6 +172,82 @@ fn bad_files_are_named_in_the_window_and_leave_the_model() {
     let events = [click("message/close", 0.5).into(), vec![drop_file(&asset("spheres.glb"))], drag()].concat();
     let options = ["--size", "300x200", "--screenshot-at-end", "later.png"];
     screen.play("missing.glb", &options, &events).end();
+    screen.assert_renders_again("later");
+}
+
+#[test]
+fn files_are_looked_for_in_the_window() {
+    let Some(screen) = Screen::open() else { return };
+    std::fs::create_dir(screen.path("models")).unwrap();
+    for copy in ["first.glb", "models/second.glb"] {
+        std::fs::copy(asset("spheres.glb"), screen.path(copy)).unwrap();
+    }
+    std::fs::write(screen.path("models/notes.txt"), "not listed").unwrap();
+    let sky = image::Rgb32FImage::from_fn(32, 16, |_, y| image::Rgb([0.2, 0.4, 0.1 * y as f32]));
+    sky.save(screen.path("sky.hdr")).unwrap();
+    let events = [
+        key("P").to_vec(),
+        // Escape closes it without a choice.
+        click("file/browse", 0.5).into(),
+        vec![point_at("browser/models", 0.5)],
+        key("Escape").into(),
+        vec![hold(1)],
+        click("file/browse", 0.5).into(),
+        vec![hold(1)],
+        click("browser/models", 0.5).into(),
+        vec![hold(1)],
+        click("browser/second.glb", 0.5).into(),
+        vec![hold(1)],
+        click("environment/browse", 0.5).into(),
+        vec![hold(1)],
+        click("browser/..", 0.5).into(),
+        vec![hold(1)],
+        click("browser/sky.hdr", 0.5).into(),
+        key("P").into(),
+    ];
+    let options = ["--size", "800x700", "--screenshot-at-end", "found.png"];
+    screen.play("first.glb", &options, &events.concat()).end();
+    screen.assert_renders_again("found");
+    let state = screen.state("found.json");
+    assert!(state["model"].as_str().unwrap().ends_with("models/second.glb"), "{state}");
+    let source = state["environment"]["source"].as_str().unwrap();
+    assert!(source.ends_with("sky.hdr") && !source.contains("models"), "{state}");
+}
+
+#[test]
+fn a_model_with_a_damaged_image_leaves_the_one_before() {
+    let Some(screen) = Screen::open() else { return };
+    // Its geometry is whole, and so may be seen before the image is found to be damaged.
+    let floats = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let bytes: Vec<u8> = floats.iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+    std::fs::write(screen.path("corners.bin"), bytes).unwrap();
+    std::fs::write(screen.path("image.png"), b"\x89PNG\r\n\x1a\nand no more").unwrap();
+    let model = serde_json::json!({
+        "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "material": 0 }] }],
+        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }], "images": [{ "uri": "image.png" }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] },
+            { "bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2" },
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteLength": 24 }],
+        "buffers": [{ "uri": "corners.bin", "byteLength": 36 }],
+    });
+    std::fs::write(screen.path("damaged.gltf"), model.to_string()).unwrap();
+    let shot: Vec<String> = [key("F12").as_slice(), &key("Escape")].concat();
+    // A message that is not there fails the replay.
+    let bad = [vec![drop_file("damaged.gltf")], click("message/close", 0.5).into()].concat();
+    let events = [drag(), shot.clone(), bad, drag(), shot].concat();
+    screen.play(&asset("spheres.glb"), &["--size", "300x200"], &events).end();
+    for saved in ["spheres-1", "spheres-2"] {
+        screen.assert_renders_again(saved);
+    }
+    assert_ne!(screen.state("spheres-1.json")["camera"], screen.state("spheres-2.json")["camera"]);
+    // A window in which nothing was open stays empty, and opens the next.
+    let events = [click("message/close", 0.5).into(), vec![drop_file(&asset("showcase.glb"))], drag()].concat();
+    let options = ["--size", "300x200", "--screenshot-at-end", "later.png"];
+    screen.play("damaged.gltf", &options, &events).end();
     screen.assert_renders_again("later");
 }
 

@@ -1,6 +1,8 @@
 //! The model that is open, and another one by its path.
 
+use super::browser;
 use crate::app::desk::Desk;
+use crate::app::folder::Kind;
 use crate::app::gui::name_place;
 use crate::app::keys::Action;
 use crate::app::viewer::Effect;
@@ -21,6 +23,11 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, effects: &mut Vec<Effect>
             effects.push(Effect::Open(PathBuf::from(desk.texts.model.trim())));
         }
     });
+    let browse = ui.button("look for a model");
+    name_place(&browse, "file/browse");
+    if browse.clicked() {
+        browser::open(desk, Kind::Model);
+    }
     ui.horizontal(|ui| {
         let buttons = [
             ("previous", Action::Neighbour { backward: true }),

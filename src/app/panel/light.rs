@@ -1,7 +1,8 @@
 //! Light from around, and the lights of the file.
 
-use super::rows;
+use super::{browser, rows};
 use crate::app::desk::Desk;
+use crate::app::folder::Kind;
 use crate::app::gui::name_place;
 use crate::scene::LightKind;
 
@@ -31,6 +32,12 @@ pub(super) fn environment(ui: &mut egui::Ui, desk: &mut Desk) {
             environment.source = desk.texts.panorama.trim().to_owned();
         }
     });
+    let browse = ui.button("look for a panorama");
+    name_place(&browse, "environment/browse");
+    if browse.clicked() {
+        browser::open(desk, Kind::Panorama);
+    }
+    let environment = &mut desk.viewer.state.environment;
     rows::number(ui, ("rotation, degrees", "environment/rotation"), &mut environment.rotation_deg, 0.0..=360.0);
     rows::factor(ui, ("intensity", "environment/intensity"), &mut environment.intensity, 0.001..=100.0);
 }

@@ -17,6 +17,7 @@ pub(super) fn picture(ui: &mut egui::Ui, desk: &mut Desk) {
     rows::choice(ui, ("geometry factor", "look/geometry"), &mut look.geometry);
     rows::switch(ui, ("energy compensation", "look/energy"), &mut look.energy_compensation);
     background(ui, &mut look.background);
+    rows::number(ui, ("background blur", "look/background-blur"), &mut look.background_blur, 0.0..=1.0);
 }
 
 fn background(ui: &mut egui::Ui, background: &mut BackgroundState) {

@@ -1,5 +1,6 @@
 //! What lies over the picture.
 
+mod browser;
 mod certificate;
 mod file;
 mod inspector;
@@ -31,6 +32,7 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> Vec<Eff
     inspector::show(ui, desk, stage);
     overlay::statistics(ui, desk, stage);
     overlay::help(ui, desk);
+    browser::show(ui, desk, &mut effects);
     effects
 }
 

@@ -247,3 +247,18 @@ fn maps_without_suns_and_the_suns_add_up_to_the_whole() {
         assert!(rest.max_element() < 0.25 * all.max_element(), "level {level}: {rest} of {all}");
     }
 }
+
+#[test]
+fn a_sketch_is_the_same_light_blurred() {
+    let image = super::super::studio::studio();
+    let [sketched, exact] = [sketch(&image, &BakeOptions::default()), bake(&image, &BakeOptions::default(), &Silent)];
+    for direction in [DVec3::X, DVec3::NEG_Y, DVec3::new(-0.6, 0.64, 0.48)] {
+        for (perceptual_roughness, limit) in [(0.5, 0.1), (1.0, 0.02)] {
+            let [a, b] = [&sketched, &exact].map(|maps| maps.specular(direction, perceptual_roughness));
+            assert!(
+                (a - b).abs().max_element() < limit * b.max_element(),
+                "{direction} {perceptual_roughness}: {a} {b}"
+            );
+        }
+    }
+}

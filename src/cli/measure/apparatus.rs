@@ -10,7 +10,7 @@ use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fulls
 use crate::gpu::{Gpu, formats};
 use crate::gpu_scene::entry;
 use crate::renderer::RenderError;
-use crate::shader::{ShaderSources, Slots, compose, create_module};
+use crate::shader::{Backdrop, ShaderSources, Slots, compose, create_module};
 use wgpu::util::DeviceExt;
 
 /// Rounds of each measurement, of which the median counts.
@@ -48,7 +48,13 @@ impl<'a> Apparatus<'a> {
             ..Default::default()
         });
         // A uniform, a texture and a sampler are what a probe binds too.
-        Self { gpu, basis, timestamps: Timestamps::new(gpu), layout: background_layout(&gpu.device), sampler }
+        Self {
+            gpu,
+            basis,
+            timestamps: Timestamps::new(gpu),
+            layout: background_layout(&gpu.device, Backdrop::Sharp),
+            sampler,
+        }
     }
 
     /// A pass over `side` by `side` pixels with the shader `wgsl`.

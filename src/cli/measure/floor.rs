@@ -10,7 +10,8 @@ use crate::reference::geometry::Ray;
 use crate::reference::surface::World;
 use crate::scene::{Background, Scene, View};
 use crate::shader::{
-    DisplayFeatures, SceneFeatures, ShaderError, ShaderSources, background_module, display_module, forward_module,
+    Backdrop, DisplayFeatures, SceneFeatures, ShaderError, ShaderSources, background_module, display_module,
+    forward_module,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -96,7 +97,7 @@ impl FloorOf<'_> {
         let mut work = surfaces;
         work.add(&self.display_work()?, pixels);
         if self.view.background == Background::Environment && self.features.environment {
-            let panorama = fragment_work(&background_module(&ShaderSources::default())?.parse()?);
+            let panorama = fragment_work(&background_module(&ShaderSources::default(), Backdrop::Sharp)?.parse()?);
             work.add(&panorama.unwrap_or_default().pixel, seen.background);
         }
         let covered: f64 = seen.surfaces.values().sum();

@@ -150,6 +150,6 @@ fn progress_goes_through_three_stages() {
     let log = Log::default();
     let options = ImportOptions { progress: &log, ..Default::default() };
     crate::import::model_from_slice(&super::hostile::model().glb(), "model", None, &options).unwrap();
-    let expected = [("read", 0, 0), ("decode images", 1, 1), ("build geometry", 2, 2)];
+    let expected = [("read", 0, 0), ("build geometry", 2, 2), ("decode images", 1, 1)];
     assert_eq!(*log.0.lock().unwrap(), expected.map(|(stage, total, done)| (stage.to_owned(), total, done)));
 }

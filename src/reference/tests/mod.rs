@@ -20,6 +20,7 @@ pub(in crate::reference) fn view() -> View {
         exposure_ev: 0.0,
         tone_map: ToneMap::Neutral,
         background: Background::Transparent,
+        background_blur: 0.0,
         energy_compensation: true,
         geometry: Geometry::default(),
         quality: Default::default(),

@@ -11,8 +11,17 @@ use std::path::{Path, PathBuf};
 /// Keys of a case that are no flags.
 const KEYS: [&str; 8] = ["name", "model", "kind", "thresholds", "mask", "skip", "within", "matrix"];
 /// Flags that a furnace sets itself, or that would put light into it.
-const NOT_OF_FURNACES: [&str; 8] =
-    ["env", "env-rotation", "env-intensity", "background", "light", "exposure", "tone-map", "debug-view"];
+const NOT_OF_FURNACES: [&str; 9] = [
+    "env",
+    "env-rotation",
+    "env-intensity",
+    "background",
+    "background-blur",
+    "light",
+    "exposure",
+    "tone-map",
+    "debug-view",
+];
 /// More cases than this of one matrix are a slip of the pen.
 const MATRIX_MAX: usize = 10_000;
 
