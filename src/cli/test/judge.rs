@@ -10,6 +10,9 @@ use crate::cli::error::CliError;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// Name of the condition that `--repeat` makes.
+pub(super) const REPETITIONS: &str = "repeat.pixels";
+
 /// Which goldens a run writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Update {
@@ -60,6 +63,8 @@ pub(super) fn without_picture(case: &Case, status: Status, reason: Option<String
         blobs: Blobs::default(),
         provenance: None,
         golden_provenance: None,
+        moved: Vec::new(),
+        ingredients: None,
         accept: None,
         golden_written: false,
         times: Times::default(),
@@ -114,7 +119,7 @@ impl Trial<'_> {
         let flaw = || self.drawn.fault.clone().or_else(|| golden::blank(&self.drawn.rgba));
         let Some((bytes, golden)) = read_golden(&path)? else {
             self.report.status = Status::New;
-            return self.propose(&path, flaw());
+            return self.propose(flaw());
         };
         if let Some(problem) = golden::blank(&golden.rgba) {
             return Err(CliError::Usage(format!("{}: is no golden: {problem}; remove it", path.display())));
@@ -140,35 +145,18 @@ impl Trial<'_> {
             self.fail(None);
         }
         let has_failed = self.report.status == Status::Fail;
-        if has_failed || (self.judge.update == Some(Update::All) && !is_equal) {
-            self.propose(&path, flaw)
-        } else {
-            Ok(())
-        }
+        if has_failed || (self.judge.update == Some(Update::All) && !is_equal) { self.propose(flaw) } else { Ok(()) }
     }
 
-    /// Makes the picture the golden, or says how to, or why it cannot be one.
-    fn propose(&mut self, golden: &Path, flaw: Option<String>) -> Result<(), CliError> {
-        let png = self.actual()?;
+    /// Says how to make the picture the golden, or why it cannot be one.
+    fn propose(&mut self, flaw: Option<String>) -> Result<(), CliError> {
+        self.actual()?;
         if let Some(flaw) = flaw {
             self.report.reason = Some(format!("{flaw}; such a picture cannot become a golden"));
             return Ok(());
         }
-        let is_new = self.report.status == Status::New;
-        let Judge { suite, out, update, .. } = *self.judge;
-        let is_wanted = match update {
-            None => false,
-            Some(Update::New) => is_new,
-            Some(Update::Changed) => !is_new,
-            Some(Update::All) => true,
-        };
-        if is_wanted {
-            golden::write(golden, &png, &self.provenance, suite.golden_bytes_max)?;
-            (self.report.status, self.report.golden_written) = (Status::Pass, true);
-            self.report.reason = Some("the picture has become the golden".into());
-        } else {
-            self.report.accept = Some(accept_command(&suite.file, &self.case.id, out));
-        }
+        let Judge { suite, out, .. } = *self.judge;
+        self.report.accept = Some(accept_command(&suite.file, &self.case.id, out));
         Ok(())
     }
 
@@ -233,7 +221,7 @@ impl Trial<'_> {
     fn check_repetitions(&mut self) {
         let Some(differing) = self.drawn.differing_when_repeated else { return };
         self.report.metrics.push(MetricReport {
-            name: "repeat.pixels".into(),
+            name: REPETITIONS.into(),
             value: Some(differing as f64),
             comparison: "<=".into(),
             limit: 0.0,

@@ -9,6 +9,7 @@ mod blobs;
 mod comparison;
 mod date;
 mod golden;
+mod ingredients;
 mod judge;
 mod junit;
 mod limits;
@@ -21,6 +22,7 @@ mod report;
 mod run;
 #[cfg(test)]
 mod schema;
+mod second_look;
 mod stage;
 mod suite;
 mod text;

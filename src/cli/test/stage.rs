@@ -1,6 +1,7 @@
 //! Pictures of many cases on one device. What consecutive cases share is loaded once.
 
 use super::golden;
+use super::ingredients::{Gathering, Ingredients, channels, content_hash, size};
 use super::report::Kind;
 use super::suite::{Case, CaseArgs};
 use crate::app::{in_units, picture};
@@ -113,6 +114,41 @@ impl<'a> Stage<'a> {
             load_ms,
             draw_ms,
         })
+    }
+
+    /// What the picture of a case is made of, from views that are no larger than that needs.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub(super) fn ingredients(&mut self, case: &'a Case) -> Result<Ingredients, CliError> {
+        let args = &case.args;
+        self.load(&args.subject)?;
+        let picture = self.view(args)?;
+        let view =
+            View { size_px: size(picture.size_px), background: Background::Transparent, channel: None, ..picture };
+        let place = self.upload(args, &view)?;
+        let surroundings = self.surroundings(&args.subject)?;
+        let (_, subject) = self.subject.as_ref().ok_or_else(nothing_is_loaded)?;
+        let scale = f64::from(picture.size_px.x) / f64::from(view.size_px.x);
+        let mut gathering = Gathering::new(&subject.scene, &view, scale, &surroundings);
+        for (name, channel) in channels(&subject.scene) {
+            let view = View { channel: Some(channel), ..view.clone() };
+            let frame = self.frame(args, &view, place, Wanted { radiance: true, display: false })?;
+            if let Some(radiance) = frame.radiance {
+                gathering.take(&name, &in_units(channel, radiance, &view));
+            }
+        }
+        Ok(gathering.finish())
+    }
+
+    /// The environment by name and, of a file, by content.
+    fn surroundings(&mut self, args: &SubjectArgs) -> Result<String, CliError> {
+        let name = args.environment_name().to_owned();
+        if !args.has_panorama() {
+            return Ok(name);
+        }
+        let hash = self.hash_of_file(Path::new(args.environment_source()))?;
+        Ok(format!("{name} ({})", content_hash(&hash)))
     }
 
     /// Shades once more, to find out where the radiance is no number before it is clamped.
