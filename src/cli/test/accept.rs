@@ -39,6 +39,7 @@ pub(in crate::cli) fn run(args: &AcceptArgs) -> Result<(), CliError> {
     let chosen = chosen(&report, &args.cases)?;
     // All are checked before one is written.
     let checked = chosen.into_iter().map(|case| check(&suite, &report, case)).collect::<Result<Vec<_>, _>>()?;
+    suite.clear_stale_goldens();
     let mut names = String::new();
     for Accepted { case, png, golden } in &checked {
         if let Some(provenance) = &case.provenance {

@@ -3,7 +3,7 @@
 use super::ingredients::Ingredients;
 use super::report::Provenance;
 use crate::cli::error::CliError;
-use crate::cli::output;
+use crate::cli::output::{self, write_in_folders};
 use crate::scene::RadianceImage;
 use serde::Deserialize;
 use std::io::Cursor;
@@ -110,18 +110,6 @@ pub(super) fn read_judged(path: &Path, hash: Option<&str>) -> Result<Vec<u8>, St
     } else {
         Err(format!("{} is not the picture that was judged; {again}", path.display()))
     }
-}
-
-/// Writes a file, and makes the folders that it is in.
-///
-/// # Errors
-/// When that is not possible.
-pub(super) fn write_in_folders(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    if let Some(folder) = path.parent() {
-        let failed = |error: std::io::Error| CliError::Write { path: path.to_owned(), reason: error.to_string() };
-        std::fs::create_dir_all(folder).map_err(failed)?;
-    }
-    output::write(path, bytes)
 }
 
 /// Why a picture can be no golden, if it cannot: nothing can be seen in it.

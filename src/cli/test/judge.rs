@@ -1,12 +1,13 @@
 //! What a picture is worth: the golden beside it, the limits, and what is left for people to look at.
 
 use super::comparison::{Comparison, compare, read_golden};
+use super::drawing::Drawn;
 use super::golden;
 use super::limits::Compared;
 use super::report::{AdapterReport, Blobs, CaseReport, Kind, MetricReport, Paths, Provenance, Status, Times};
-use super::stage::Drawn;
 use super::suite::{Case, Suite, default_out};
 use crate::cli::error::CliError;
+use crate::cli::output;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -198,7 +199,7 @@ impl Trial<'_> {
         }
         let path = self.file("truth.png");
         let truth = self.encode(self.drawn.truth.as_deref().unwrap_or_default(), &path)?;
-        golden::write_in_folders(&path, &truth)?;
+        output::write_in_folders(&path, &truth)?;
         self.report.paths.golden = Some(path.clone());
         let limits = self.judge.suite.limits(self.case, &self.judge.adapter.class);
         let compared = compare(&actual, (&truth, &path), limits, self.case.mask.as_deref())?;
@@ -211,8 +212,8 @@ impl Trial<'_> {
         self.report.metrics = compared.metrics;
         let Some([difference, heat_map]) = compared.pictures else { return Ok(()) };
         let files = [self.file("difference.png"), self.file("flip.png")];
-        golden::write_in_folders(&files[0], &difference)?;
-        golden::write_in_folders(&files[1], &heat_map)?;
+        output::write_in_folders(&files[0], &difference)?;
+        output::write_in_folders(&files[1], &heat_map)?;
         let [difference, heat_map] = files;
         (self.report.paths.difference, self.report.paths.heat_map) = (Some(difference), Some(heat_map));
         Ok(())
@@ -254,7 +255,7 @@ impl Trial<'_> {
         }
         let path = self.file("actual.png");
         let png = self.encode(&self.drawn.rgba, &path)?;
-        golden::write_in_folders(&path, &png)?;
+        output::write_in_folders(&path, &png)?;
         self.report.paths.actual_hash = Some(blake3::hash(&png).to_hex().to_string());
         self.report.paths.actual = Some(path);
         self.png = Some(png.clone());

@@ -8,6 +8,7 @@ mod annotations;
 mod blobs;
 mod comparison;
 mod date;
+mod drawing;
 mod golden;
 mod ingredients;
 mod judge;
@@ -23,13 +24,13 @@ mod run;
 #[cfg(test)]
 mod schema;
 mod second_look;
-mod stage;
 mod suite;
 mod text;
 mod verdicts;
 
 pub(super) use accept::{AcceptArgs, run as accept};
 pub(super) use merge::{MergeArgs, run as merge};
+pub(super) use partition::{PartitionRequest, Share};
 
 use super::driver::DeviceArgs;
 use super::environment::CacheArgs;
@@ -110,6 +111,7 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     }
     let out = args.out.clone().unwrap_or_else(|| suite.default_out());
     publish::forget(&out)?;
+    suite.clear_stale_goldens();
     let progress = StderrProgress::new(args.quiet);
     let judge = Judge { suite: &suite, adapter: &adapter, out: &out, update: args.update, times: args.repeat };
     let plan = Plan { cases: &cases, judge: &judge, jobs: args.jobs.into(), cache: &args.cache };

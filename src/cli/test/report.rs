@@ -1,8 +1,8 @@
 //! What a run of a suite leaves: `report.json`, and what it consists of.
 
-use super::golden::write_in_folders;
 use super::ingredients::{Finding, Ingredients};
 use crate::cli::error::CliError;
+use crate::cli::output::write_in_folders;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,13 @@
 //! A run: one thread draws, others judge.
 
 use super::date::today;
+use super::drawing::Drawn;
 use super::judge::{Judge, without_picture};
 use super::report::{CaseReport, Status};
-use super::stage::{Drawn, Stage};
 use super::suite::Case;
 use crate::cli::environment::CacheArgs;
 use crate::cli::error::CliError;
+use crate::cli::stage::Stage;
 use crate::gpu::Gpu;
 use crate::progress::{Progress, Silent};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};

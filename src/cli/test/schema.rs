@@ -104,7 +104,7 @@ fn full() -> SuiteReport {
 }
 
 fn ingredients() -> Ingredients {
-    let quantity = Quantity { name: "metallic".into(), mean: [0.5; 3], spread: [0.1; 3], sketch: "00".repeat(32) };
+    let quantity = Quantity { name: "metallic".into(), mean: [0.5; 3], spread: [0.1; 3], sketch: "00".repeat(64) };
     let texture = TextureHash { slot: "base_color".into(), hash: "0f".repeat(8) };
     let material = MaterialIngredients {
         name: "paint".into(),

@@ -236,3 +236,132 @@ fn lights(others: &[OtherLight<'_>], both: &[Both<'_>]) -> Vec<Finding> {
     };
     others.iter().map(finding).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Quantity;
+    use super::*;
+
+    fn quantity(name: &str, value: f64) -> Quantity {
+        Quantity { name: name.into(), mean: [value; 3], spread: [0.0; 3], sketch: String::new() }
+    }
+
+    fn material(name: &str, quantities: &[(&str, f64)]) -> MaterialIngredients {
+        MaterialIngredients {
+            name: name.into(),
+            pixels: 100,
+            measured: 80,
+            center_px: [32.0, 16.0],
+            textures: vec![TextureHash { slot: "normal".into(), hash: "0f".into() }],
+            quantities: quantities.iter().map(|(name, value)| quantity(name, *value)).collect(),
+        }
+    }
+
+    const PAINT: [(&str, f64); 7] = [
+        ("coverage", 1.0),
+        ("depth", 2.0),
+        ("position", 1.0),
+        ("perceptual-roughness", 0.5),
+        ("alphas", 0.25),
+        ("ibl-diffuse", 1.0),
+        ("ibl-specular", 0.5),
+    ];
+
+    fn picture() -> Ingredients {
+        Ingredients {
+            size_px: [64, 32],
+            scale: 2.0,
+            lights: vec!["environment neutral".into(), "point light A".into(), "point light B".into()],
+            materials: vec![material("paint", &PAINT), material("paint", &PAINT), material("glass", &PAINT)],
+        }
+    }
+
+    /// What is said once a change has been made.
+    fn said(change: impl Fn(&mut Ingredients)) -> Vec<(Moved, String)> {
+        let (then, mut now) = (picture(), picture());
+        change(&mut now);
+        findings(&then, &now).into_iter().map(|finding| (finding.moved, finding.text)).collect()
+    }
+
+    fn set(of: &mut MaterialIngredients, name: &str, value: f64) {
+        let place = of.quantities.iter().position(|quantity| quantity.name == name).unwrap();
+        of.quantities[place] = quantity(name, value);
+    }
+
+    #[test]
+    fn causes_are_told_and_what_follows_is_not() {
+        let found = said(|now| {
+            let paint = &mut now.materials[1];
+            set(paint, "perceptual-roughness", 0.6);
+            set(paint, "alphas", 0.36);
+            set(paint, "ibl-specular", 0.4);
+        });
+        let text = "material \"paint\": perceptual-roughness 0.500 -> 0.600, and so ibl-specular -20 %";
+        assert_eq!(found, [(Moved::Material, text.into())]);
+        // Alphas alone are another matter.
+        let found = said(|now| set(&mut now.materials[0], "alphas", 0.3));
+        assert_eq!(found, [(Moved::Material, "material \"paint\": alphas 0.250 -> 0.300".into())]);
+        let found = said(|now| set(&mut now.materials[0], "ibl-diffuse", 1.2));
+        assert!(
+            found.len() == 1 && found[0].0 == Moved::Shading && found[0].1.contains("ibl-diffuse +20 %"),
+            "{found:?}"
+        );
+        let found = said(|now| now.materials[2].textures.clear());
+        assert_eq!(found, [(Moved::Material, "material \"glass\": no normal texture any more".into())]);
+    }
+
+    #[test]
+    fn little_is_nothing() {
+        assert_eq!(said(|_| {})[0].0, Moved::Display);
+        assert_eq!(said(|now| set(&mut now.materials[0], "alphas", 0.2502))[0].0, Moved::Display);
+        let faint = |now: &mut Ingredients| now.materials[0].quantities.push(quantity("direct-specular", 1e-3));
+        assert_eq!(said(faint)[0].0, Moved::Display);
+    }
+
+    #[test]
+    fn lights_are_told_with_their_own_light() {
+        let found = said(|now| {
+            now.lights = vec!["environment neutral".into(), "point light C".into()];
+            set(&mut now.materials[0], "ibl-diffuse", 0.5);
+            now.materials[0].quantities.push(quantity("direct-diffuse", 0.7));
+        });
+        let texts: Vec<&str> = found.iter().map(|(_, text)| text.as_str()).collect();
+        assert!(texts[0].starts_with("point light C, instead of point light A; with it direct-diffuse"), "{texts:?}");
+        assert!(texts[1].starts_with("no longer there: point light B"), "{texts:?}");
+        // The environment has not changed: what it lights has.
+        assert!(found[2].0 == Moved::Shading && texts[2].contains("ibl-diffuse -50 %"), "{texts:?}");
+        let dark = said(|now| {
+            now.lights.clear();
+            now.materials.iter_mut().for_each(|material| set(material, "perceptual-roughness", 1.0));
+        });
+        assert!(dark.len() == 3 && dark.iter().all(|(moved, _)| *moved == Moved::Lights), "{dark:?}");
+    }
+
+    #[test]
+    fn geometry_is_of_one_material_or_of_all() {
+        let right = |of: &mut MaterialIngredients| of.center_px[0] += 0.5;
+        let found = said(|now| now.materials.iter_mut().for_each(right));
+        assert!(found.len() == 1 && found[0].1.contains("moved by +1.00 pixels to the right"), "{found:?}");
+        let found = said(|now| right(&mut now.materials[2]));
+        assert!(found.len() == 1 && found[0].1.starts_with("material \"glass\": seen in 400 pixels"), "{found:?}");
+        let found = said(|now| set(&mut now.materials[2], "position", 1.5));
+        assert_eq!(found, [(Moved::Geometry, "material \"glass\": position 1.000 -> 1.500 m".into())]);
+        let found = said(|now| drop(now.materials.remove(2)));
+        assert_eq!(found, [(Moved::Geometry, "material \"glass\" was seen, and is not".into())]);
+        let found = said(|now| now.materials[0].name = "varnish".into());
+        assert_eq!(found.len(), 2, "{found:?}");
+    }
+
+    #[test]
+    fn what_is_not_ours_is_not_compared() {
+        assert_eq!(said(|now| now.size_px = [32, 32])[0].0, Moved::Unknown);
+        let mut then = picture();
+        then.materials[0].quantities[0].sketch = "no digits".into();
+        assert_eq!(findings(&then, &then)[0].moved, Moved::Unknown);
+        let many = said(|now| {
+            let some = |index| MaterialIngredients { name: format!("m{index}"), ..material("", &PAINT) };
+            now.materials.extend((0..30).map(some));
+        });
+        assert!(many.len() == MOST && many[MOST - 1].1.contains("and 19 more"), "{many:?}");
+    }
+}

@@ -8,7 +8,7 @@ use super::Quantity;
 use glam::Vec3;
 
 /// Sums of a sketch; the estimate of a square is off by a factor of 1 +- sqrt(2 / SUMS), one standard deviation.
-const SUMS: usize = 8;
+const SUMS: usize = 16;
 
 /// First two moments and signed sums of vectors, one a pixel.
 #[derive(Debug, Clone, Default)]
@@ -102,8 +102,13 @@ mod tests {
     const PIXELS: u32 = 4096;
 
     fn quantity(picture: impl Fn(usize) -> Vec3) -> Quantity {
+        quantity_from(0, picture)
+    }
+
+    /// The same under other signs: those of pixels from a number on.
+    fn quantity_from(first: usize, picture: impl Fn(usize) -> Vec3) -> Quantity {
         let mut sketch = Sketch::default();
-        (0..PIXELS as usize).for_each(|pixel| sketch.add(pixel, picture(pixel)));
+        (0..PIXELS as usize).for_each(|pixel| sketch.add(first + pixel, picture(pixel)));
         Quantity { name: String::new(), mean: sketch.mean(), spread: sketch.spread(), sketch: sketch.digits() }
     }
 
@@ -126,14 +131,20 @@ mod tests {
             let squares = (0..PIXELS as usize).map(|pixel| (a(pixel) - b(pixel)).as_dvec3().length_squared());
             (squares.sum::<f64>() / f64::from(PIXELS)).sqrt()
         };
+        const SIGNS: usize = 16;
         for (i, a) in pictures.iter().enumerate() {
             for (j, b) in pictures.iter().enumerate() {
-                let (estimate, truth) = (distance(&quantity(a), &quantity(b), PIXELS).unwrap(), truth(a, b));
+                let squared = |k: usize| {
+                    let [a, b] = [a, b].map(|picture| quantity_from(k * PIXELS as usize, picture));
+                    distance(&a, &b, PIXELS).unwrap().powi(2)
+                };
+                let estimate = (0..SIGNS).map(squared).sum::<f64>() / SIGNS as f64;
+                let truth = truth(a, b).powi(2);
                 let is_exact = [i, j].iter().any(|place| [2, 3].contains(place)) || i == j;
-                // Three standard deviations of the square.
-                let allowed = if is_exact { 1e-5 } else { 3.0 * (2.0 / SUMS as f64).sqrt() };
-                let error = (estimate * estimate - truth * truth).abs();
-                assert!(error <= allowed * truth * truth, "{i} {j}: {estimate} instead of {truth}");
+                // Three standard deviations.
+                let allowed = if is_exact { 1e-5 } else { 3.0 * (2.0 / (SUMS * SIGNS) as f64).sqrt() };
+                let error = (estimate - truth).abs();
+                assert!(error <= allowed * truth + 1e-12, "{i} {j}: {estimate} instead of {truth}");
             }
         }
     }
@@ -154,7 +165,7 @@ mod tests {
         let good = quantity(|pixel| checker(pixel, false));
         assert_eq!(distance(&good, &good, PIXELS), Some(0.0));
         let digits = &good.sketch;
-        for bad in ["0", &digits[1..], &digits.replace(&digits[..8], "7fc00000"), &"é".repeat(32), &"g".repeat(64)] {
+        for bad in ["0", &digits[1..], &digits.replace(&digits[..8], "7fc00000"), &"é".repeat(64), &"g".repeat(128)] {
             let bad = Quantity { sketch: bad.into(), ..good.clone() };
             assert_eq!(distance(&good, &bad, PIXELS), None, "{}", bad.sketch);
         }
