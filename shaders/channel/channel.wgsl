@@ -1,8 +1,10 @@
 #import "surface/visible_point.wgsl"
+#import "channel/asked.wgsl"
 #import <channels>
 
 // A channel of a surface in place of its radiance, wherever it covers anything at all.
 fn output(v: VertexOut, front_facing: bool) -> vec4f {
+    ask(v.position_in_clip.w);
     let facet = cross(dpdx(v.position_in_world), dpdy(v.position_in_world));
     let toward_viewer = direction_to_viewer(v);
     let surface = read_surface(v, front_facing, toward_viewer);

@@ -150,7 +150,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<(), CliError> {
         return Err(CliError::Usage("--plot and --baseline are for --suite; use --pareto or --stats".into()));
     }
     let (scene, warnings) = args.subject.load(&progress, &Stopwatch::default())?;
-    let view = args.view.view(&scene, args.subject.has_panorama())?;
+    let view = args.view.view(&scene, args.subject.has_panorama(), None)?;
     // Float targets are among the settings.
     let precision = if args.effort.steady { args.driver.precision() } else { Precision::Float };
     let gpu = Gpu::open(&args.driver.request(), GpuOptions { precision }).map_err(CliError::NeedsAdapter)?;

@@ -1,7 +1,9 @@
 //! Flags that place the camera.
 
 use super::error::CliError;
-use crate::scene::framing::{DEFAULT_FOV_RAD, DEFAULT_ORBIT_RAD, Framing, frame_scene, orbit_direction};
+use crate::scene::framing::{
+    DEFAULT_FOV_RAD, DEFAULT_ORBIT_RAD, Framing, frame_scene, frame_turning, middle, orbit_direction,
+};
 use crate::scene::{Camera, Projection, Scene};
 use glam::{DVec3, UVec2};
 use std::str::FromStr;
@@ -98,18 +100,48 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 }
 
 impl CameraArgs {
-    /// The camera for a picture of `size_px`.
-    pub(super) fn camera(&self, scene: &Scene, size_px: UVec2) -> Result<Camera, CliError> {
-        self.check()?;
-        if self.camera != "auto" {
-            return self.camera_of_file(scene);
+    /// What stands for the camera in names of files.
+    pub(super) fn name(&self) -> &str {
+        match (self.orbit, self.eye) {
+            _ if self.camera != "auto" => &self.camera,
+            (Some(_), _) => "orbit",
+            (_, Some(_)) => "eye",
+            (None, None) => "auto",
         }
+    }
+
+    /// The camera for a picture of `size_px`. On a turntable it has turned by `turn_rad` about the vertical axis through
+    /// the point that it orbits, counter-clockwise from above, and is where all turns have the whole scene in the picture.
+    ///
+    /// # Errors
+    /// When a flag is out of range, or the file has no such camera.
+    pub(super) fn camera(&self, scene: &Scene, size_px: UVec2, turn_rad: Option<f64>) -> Result<Camera, CliError> {
+        self.check()?;
+        let point = |point: Option<Point>| point.map(|Point(point)| point);
+        let axis = || point(self.target).or(point(self.look_at)).unwrap_or_else(|| middle(scene));
+        let turned = turn_rad.map(|angle_rad| (axis(), angle_rad));
+        let camera = if self.camera == "auto" {
+            self.placed(scene, size_px, turned.map(|(axis, _)| axis))?
+        } else {
+            self.camera_of_file(scene)?
+        };
+        Ok(match turned {
+            Some((axis, angle_rad)) => camera.turned(axis, angle_rad),
+            None => camera,
+        })
+    }
+
+    /// A camera that no file has; before an axis it is far enough away for all turns about that.
+    fn placed(&self, scene: &Scene, size_px: UVec2, axis: Option<DVec3>) -> Result<Camera, CliError> {
         let fov_y_rad = self.fov.map_or(DEFAULT_FOV_RAD, f64::to_radians);
         let (theta_rad, phi_rad) = DEFAULT_ORBIT_RAD;
         let default = Orbit { theta_rad, phi_rad, radius: Radius::OfFraming(1.0) };
         let orbit = self.orbit.unwrap_or(default);
         let direction = orbit_direction(orbit.theta_rad, orbit.phi_rad);
-        let framing = frame_scene(scene, direction, fov_y_rad, size_px);
+        let framing = match axis {
+            Some(axis) => frame_turning(scene, axis, direction, fov_y_rad, size_px),
+            None => frame_scene(scene, direction, fov_y_rad, size_px),
+        };
         let (eye, target) = match self.eye {
             Some(Point(eye)) => (eye, self.look_at.map_or(framing.target, |Point(at)| at)),
             None => {

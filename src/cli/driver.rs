@@ -125,6 +125,11 @@ impl DriverArgs {
         self.renderer == RendererArg::Reference
     }
 
+    /// How a frame is drawn.
+    pub(super) fn frame(&self) -> &FrameArgs {
+        &self.frame
+    }
+
     pub(super) fn precision(&self) -> Precision {
         self.frame.precision()
     }

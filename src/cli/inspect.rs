@@ -57,7 +57,7 @@ pub(super) fn run(args: &InspectArgs) -> Result<(), CliError> {
 
 fn explain(args: &InspectArgs, pixel: &str, loaded: Loaded, progress: &StderrProgress) -> Result<String, CliError> {
     let Loaded { scene, mut warnings, .. } = loaded;
-    let view = args.view.view(&scene, args.subject.has_panorama())?;
+    let view = args.view.view(&scene, args.subject.has_panorama(), None)?;
     let pixel = parse_pixel(pixel, &view)?;
     let gpu = args.driver.open_for(PIXEL_OPTIONS.precision, &mut warnings)?;
     let maps = || bake_maps(&scene, view.quality, args.subject.cache(), progress).map(|baked| baked.maps);

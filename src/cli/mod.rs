@@ -1,6 +1,7 @@
 //! The command line. Results go to stdout, everything else to stderr.
 
 mod bake;
+mod batch;
 mod bench;
 mod camera;
 mod clock;
@@ -20,7 +21,9 @@ mod output;
 mod overrides;
 mod progress;
 mod render;
+mod shot;
 mod stability;
+mod stage;
 mod stats;
 mod subject;
 mod svg;

@@ -34,7 +34,7 @@ impl Format {
     }
 }
 
-pub(super) use crate::output::{png, png_with_texts};
+pub(super) use crate::output::{clear_stale, clear_stale_below, png, png_with_texts};
 
 /// OpenEXR with R, G, B and A, as half floats or as float32.
 pub(super) fn exr(image: &RadianceImage, precision: Precision) -> Result<Vec<u8>, String> {
@@ -58,6 +58,18 @@ pub(super) fn exr(image: &RadianceImage, precision: Precision) -> Result<Vec<u8>
 /// Writes `bytes` to `path`, or to stdout for `-`. A file appears under its name only when it is complete.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     output::write(path, bytes).map_err(|WriteError { path, reason }| CliError::Write { path, reason })
+}
+
+/// Writes a file, and makes the folders that it is in.
+///
+/// # Errors
+/// When that is not possible.
+pub(super) fn write_in_folders(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+    if let Some(folder) = path.parent() {
+        let failed = |error: std::io::Error| CliError::Write { path: path.to_owned(), reason: error.to_string() };
+        std::fs::create_dir_all(folder).map_err(failed)?;
+    }
+    write(path, bytes)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! `specula render`: a model to a picture.
 
+use super::batch::{Batch, BatchArgs, SUBJECT};
 use super::debug_view;
 use super::driver::DriverArgs;
 use super::environment::{CacheUse, bake_maps};
@@ -7,6 +8,7 @@ use super::error::CliError;
 use super::output::{self, Format};
 use super::parallel::beside;
 use super::progress::StderrProgress;
+use super::shot::Shot;
 use super::stats::{AdapterStats, CulledStats, GpuStats, RenderStats, Stopwatch};
 use super::subject::{SubjectArgs, load_model};
 use super::tier::{TierArgs, TierStats};
@@ -27,17 +29,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
-// A state file names a model itself.
-#[command(mut_arg("model", |model| model.required(false).required_unless_present("state")))]
+// A state file names a model itself, and a manifest many.
+#[command(mut_arg("model", |model| model.required(false).required_unless_present_any(["state", "manifest"])))]
 pub(super) struct RenderArgs {
     #[command(flatten)]
     subject: SubjectArgs,
     /// Make the picture that the viewer saved with this state (.json): model, camera, light, look and materials. A MODEL
     /// on the command line takes the place of the state's.
-    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["ViewArgs", "CameraArgs", "LookArgs", "EnvironmentArgs", "LightArgs", "scene", "overrides", "debug_view"])]
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = SUBJECT)]
     state: Option<PathBuf>,
-    /// The picture: .png (display-referred) or .exr (linear radiance); - writes PNG to stdout.
-    #[arg(short, long, value_name = "FILE")]
+    /// The picture: .png (display-referred) or .exr (linear radiance); - writes PNG to stdout. The folder of --frames and
+    /// --manifest.
+    #[arg(short, long, value_name = "FILE|DIR")]
     output: PathBuf,
     /// Kind of picture, when the name does not tell.
     #[arg(long)]
@@ -46,6 +49,8 @@ pub(super) struct RenderArgs {
     view: ViewArgs,
     #[command(flatten)]
     driver: DriverArgs,
+    #[command(flatten)]
+    batch: BatchArgs,
     #[command(flatten)]
     tier: TierArgs,
     #[command(flatten)]
@@ -91,6 +96,9 @@ struct Rendered {
 }
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
+    if args.batch.is_asked() {
+        return many(args);
+    }
     let format = args.format.map_or_else(|| Format::of(&args.output), Ok)?;
     if args.json && args.output == Path::new("-") {
         return Err(CliError::Usage("--json and `-o -` both want stdout; use --stats FILE.json".into()));
@@ -149,6 +157,13 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), CliError> {
     report(args, &stats)
 }
 
+fn many(args: &RenderArgs) -> Result<(), CliError> {
+    let RenderArgs { subject, view, debug_view, driver, .. } = args;
+    let shot = Shot { subject, view, frame: driver.frame(), debug_view: *debug_view };
+    let (batch, cache, out) = (&args.batch, subject.cache(), args.output.as_path());
+    Batch { args: batch, shot, driver, cache, out, json: args.json, quiet: args.quiet }.run()
+}
+
 /// What is drawn, and from where.
 struct Subject {
     scene: Scene,
@@ -161,7 +176,7 @@ fn load(args: &RenderArgs, progress: &dyn Progress, watch: &Stopwatch) -> Result
     let Some(path) = &args.state else {
         let (mut scene, warnings) = args.subject.load(progress, watch)?;
         light_furnace(&mut scene, args.debug_view);
-        let view = args.view.view(&scene, args.subject.has_panorama())?;
+        let view = args.view.view(&scene, args.subject.has_panorama(), None)?;
         let view = View { channel: args.debug_view, ..view };
         return Ok(Subject { scene, warnings, view, model: args.subject.model().to_owned() });
     };

@@ -73,6 +73,13 @@ impl SubjectArgs {
             && self.lights == other.lights
     }
 
+    /// All flags but the model, as text: the same text is the same picture of the same files.
+    pub(super) fn settings(&self) -> String {
+        let Self { scene, overrides, environment, lights, .. } = self;
+        let surroundings = (&environment.env, environment.env_rotation, environment.env_intensity);
+        format!("{scene:?} {overrides:?} {surroundings:?} {lights:?}")
+    }
+
     /// What lights the scene from around, without the rest.
     ///
     /// # Errors

@@ -94,11 +94,17 @@ fn parse_blur(text: &str) -> Result<f32, String> {
 }
 
 impl ViewArgs {
-    /// The view of `scene`; `panorama_is_given` says that it has a panorama of the user's.
+    /// What stands for the camera in names: that of the file, or how it was placed.
+    pub(super) fn camera_name(&self) -> &str {
+        self.camera.name()
+    }
+
+    /// The view of `scene`; `panorama_is_given` says that it has a panorama of the user's. On a turntable the camera has
+    /// turned by `turn_rad`.
     ///
     /// # Errors
     /// When the exposure is no number, or the camera cannot be placed.
-    pub(super) fn view(&self, scene: &Scene, panorama_is_given: bool) -> Result<View, CliError> {
+    pub(super) fn view(&self, scene: &Scene, panorama_is_given: bool, turn_rad: Option<f64>) -> Result<View, CliError> {
         if !self.look.exposure.is_finite() {
             return Err(CliError::Usage("--exposure takes a finite number of stops".into()));
         }
@@ -108,7 +114,7 @@ impl ViewArgs {
             Background::Color(Vec3::splat(0.16))
         });
         Ok(View {
-            camera: self.camera.camera(scene, self.size)?,
+            camera: self.camera.camera(scene, self.size, turn_rad)?,
             size_px: self.size,
             exposure_ev: self.look.exposure,
             tone_map: self.look.tone_map,

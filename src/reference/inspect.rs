@@ -71,6 +71,11 @@ impl<'a> Inspector<'a> {
         self.world.details(hit, ray)
     }
 
+    /// Index of the material of a hit, in [`Scene::materials`].
+    pub fn material(&self, hit: &Hit) -> usize {
+        self.world.material(hit)
+    }
+
     /// Texture coordinates of a hit in one of the sets of its primitive, before any transform.
     pub fn uv(&self, hit: &Hit, set: usize) -> Option<DVec2> {
         self.world.uv(hit, set)

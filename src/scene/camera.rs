@@ -36,6 +36,13 @@ impl Camera {
         Self { name: None, projection, near_m, far_m, world_from_view }
     }
 
+    /// The same camera after a turn about the vertical axis through `axis`, counter-clockwise from above: from +Z toward
+    /// +X.
+    pub fn turned(&self, axis: DVec3, angle_rad: f64) -> Self {
+        let turn = DMat4::from_translation(axis) * DMat4::from_rotation_y(angle_rad) * DMat4::from_translation(-axis);
+        Self { world_from_view: turn * self.world_from_view, ..self.clone() }
+    }
+
     pub fn position_in_world(&self) -> DVec3 {
         self.world_from_view.w_axis.truncate()
     }

@@ -1,7 +1,7 @@
 //! Cameras that show a whole scene.
 
 use super::{Background, Camera, Geometry, Projection, Scene, ToneMap, View};
-use glam::{DVec2, DVec3, UVec2, Vec3};
+use glam::{DVec2, DVec3, UVec2, Vec3, Vec3Swizzles as _};
 use std::f64::consts::PI;
 
 /// The orbit that shows most of most models, a little from the right and from above: theta and phi in radians.
@@ -74,17 +74,66 @@ pub fn frame_points(
 
 /// Frames everything that is placed in `scene`; an empty scene is framed as a ball of one metre.
 pub fn frame_scene(scene: &Scene, toward_camera: DVec3, fov_y_rad: f64, size_px: UVec2) -> Framing {
-    let points: Vec<DVec3> = scene
-        .instances()
-        .iter()
-        .flat_map(|instance| {
-            let primitives = scene.meshes[instance.mesh].primitives.iter();
-            let positions = primitives.flat_map(|primitive| &primitive.positions);
-            positions.map(|position| instance.world_from_object.transform_point3(position.as_dvec3()))
+    frame_or_ball(&points_in_world(scene), toward_camera, fov_y_rad, size_px)
+}
+
+/// Frames all that `scene` shows while it turns about the vertical axis through `axis`, so that one distance does for a
+/// whole turn.
+pub fn frame_turning(scene: &Scene, axis: DVec3, toward_camera: DVec3, fov_y_rad: f64, size_px: UVec2) -> Framing {
+    let swept = swept(&points_in_world(scene), axis);
+    frame_or_ball(&swept, toward_camera, fov_y_rad, size_px)
+}
+
+/// The middle of the box around everything that is placed in `scene`; the origin where nothing is.
+pub fn middle(scene: &Scene) -> DVec3 {
+    let points = points_in_world(scene).into_iter();
+    let (min, max) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), p| (min.min(p), max.max(p)));
+    let middle = 0.5 * (min + max);
+    if middle.is_finite() { middle } else { DVec3::ZERO }
+}
+
+/// Slices of a turning body, and points around each.
+const SLICES: usize = 64;
+const AROUND: u32 = 48;
+
+/// Points around the body that `points` fill when they turn about the vertical axis: each slice as its widest ring, drawn
+/// around by a polygon.
+fn swept(points: &[DVec3], axis: DVec3) -> Vec<DVec3> {
+    let heights = points.iter().map(|point| point.y);
+    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+    let mut slices: [Option<(f64, f64, f64)>; SLICES] = [None; SLICES];
+    for point in points {
+        let share = (point.y - low) / (high - low).max(f64::MIN_POSITIVE);
+        let slice = &mut slices[((share * SLICES as f64) as usize).min(SLICES - 1)];
+        let radius = (point - axis).xz().length();
+        let (y_low, y_high, widest) = slice.unwrap_or((point.y, point.y, radius));
+        *slice = Some((y_low.min(point.y), y_high.max(point.y), widest.max(radius)));
+    }
+    // The corners of a polygon around a circle are farther out than that.
+    let corner = 1.0 / (PI / f64::from(AROUND)).cos();
+    let ring = |(y_low, y_high, radius): (f64, f64, f64)| {
+        (0..AROUND).flat_map(move |k| {
+            let (sin, cos) = (2.0 * PI * f64::from(k) / f64::from(AROUND)).sin_cos();
+            [y_low, y_high].map(|y| DVec3::new(axis.x + sin * radius * corner, y, axis.z + cos * radius * corner))
         })
-        .collect();
+    };
+    slices.into_iter().flatten().flat_map(ring).collect()
+}
+
+fn points_in_world(scene: &Scene) -> Vec<DVec3> {
+    let instances = scene.instances();
+    let of_instance = |instance: &super::Instance| {
+        let primitives = scene.meshes[instance.mesh].primitives.iter();
+        let positions = primitives.flat_map(|primitive| &primitive.positions);
+        let place = |position: &Vec3| instance.world_from_object.transform_point3(position.as_dvec3());
+        positions.map(place).collect::<Vec<_>>()
+    };
+    instances.iter().flat_map(of_instance).collect()
+}
+
+fn frame_or_ball(points: &[DVec3], toward_camera: DVec3, fov_y_rad: f64, size_px: UVec2) -> Framing {
     let ball = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
-    frame_points(points.into_iter(), toward_camera, fov_y_rad, size_px)
+    frame_points(points.iter().copied(), toward_camera, fov_y_rad, size_px)
         .or_else(|| frame_points(ball.into_iter(), toward_camera, fov_y_rad, size_px))
         .unwrap_or(Framing { target: DVec3::ZERO, distance_m: 3.0, height_m: 2.0, radius_m: 1.0 })
 }
@@ -130,6 +179,32 @@ pub fn near_far_m((center, radius_m): (DVec3, f64), eye: DVec3) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_turning_body_is_in_every_picture_and_nearly_fills_one() {
+        let points: Vec<DVec3> = (0..300)
+            .map(|i| {
+                let t = f64::from(i);
+                DVec3::new((t * 1.3).sin() * 3.0 + 5.0, (t * 0.7).cos(), (t * 2.1).sin() * 0.5)
+            })
+            .collect();
+        let axis = DVec3::new(5.0, 9.0, 0.0);
+        for (phi, size) in [(1.5, UVec2::new(400, 300)), (0.3, UVec2::new(300, 400))] {
+            let (direction, fov_y_rad) = (orbit_direction(0.4, phi), 0.7);
+            let framing = frame_points(swept(&points, axis).into_iter(), direction, fov_y_rad, size).unwrap();
+            let eye = framing.target + direction * framing.distance_m;
+            let projection = Projection::Perspective { fov_y_rad };
+            let camera = Camera::look_at(eye, framing.target, DVec3::Y, projection, 0.1, 100.0);
+            let farthest = |turn: u32| {
+                let camera = camera.turned(axis, f64::from(turn).to_radians());
+                let clip_from_world = camera.clip_from_view(size).as_dmat4() * camera.world_from_view.inverse();
+                let ndc = points.iter().map(|point| clip_from_world.project_point3(*point).truncate().abs());
+                ndc.map(DVec2::max_element).fold(0.0, f64::max)
+            };
+            let worst = (0..360).step_by(5).map(farthest).fold(0.0, f64::max);
+            assert!((0.8..=1.0 - 2.0 * MARGIN + 1e-9).contains(&worst), "{worst}");
+        }
+    }
 
     #[test]
     fn framed_points_touch_the_margin_and_none_is_outside() {

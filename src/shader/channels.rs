@@ -59,7 +59,7 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
     }
     text.push_str(
         "\nfn channel(v: VertexOut, surface: Surface, facet_normal: vec3f, front_facing: bool) -> vec3f {\n    \
-         switch frame.channel {\n",
+         switch asked.x {\n",
     );
     for input in Input::ALL {
         let value = expression(input, &features.material, &features.vertex);

@@ -130,10 +130,11 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
         ("lobes", choose(material.shading == Shading::Disney, "lighting/disney.wgsl", "lighting/lobes.wgsl")),
         (
             "punctual",
-            Slot::File(match (punctual, scene.light_list.is_clustered()) {
-                (false, _) => "lighting/punctual_none.wgsl",
-                (true, false) => "lighting/punctual.wgsl",
-                (true, true) => "lighting/punctual_clustered.wgsl",
+            Slot::File(match (punctual, scene.light_list.is_clustered(), channel) {
+                (false, ..) => "lighting/punctual_none.wgsl",
+                (true, false, false) => "lighting/punctual.wgsl",
+                (true, false, true) => "channel/punctual.wgsl",
+                (true, true, _) => "lighting/punctual_clustered.wgsl",
             }),
         ),
         ("lights", choose(scene.light_list == LightList::Few, "lighting/lights_few.wgsl", "lighting/lights.wgsl")),

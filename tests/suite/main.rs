@@ -32,6 +32,7 @@ mod packing;
 mod paths;
 mod report_fixture;
 mod report_page;
+mod sequences;
 mod shaders;
 mod sharding;
 mod stability;

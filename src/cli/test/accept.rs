@@ -39,10 +39,11 @@ pub(in crate::cli) fn run(args: &AcceptArgs) -> Result<(), CliError> {
     let chosen = chosen(&report, &args.cases)?;
     // All are checked before one is written.
     let checked = chosen.into_iter().map(|case| check(&suite, &report, case)).collect::<Result<Vec<_>, _>>()?;
+    suite.clear_stale_goldens();
     let mut names = String::new();
     for Accepted { case, png, golden } in &checked {
         if let Some(provenance) = &case.provenance {
-            golden::write(golden, png, provenance, suite.golden_bytes_max)?;
+            golden::write(golden, png, (provenance, case.ingredients.as_ref()), suite.golden_bytes_max)?;
             names += &format!("accepted {} as {}\n", case.id, golden.display());
         }
     }
@@ -78,11 +79,7 @@ fn check<'a>(suite: &Suite, report: &SuiteReport, case: &'a CaseReport) -> Resul
         return Err(refuse(format!("the suite has another such case now; {again}")));
     }
     let path = case.paths.actual.clone().ok_or_else(|| refuse("there is no picture".into()))?;
-    let failed = |error: std::io::Error| refuse(format!("{}: cannot be read: {error}; {again}", path.display()));
-    let png = std::fs::read(&path).map_err(failed)?;
-    if case.paths.actual_hash.as_deref() != Some(blake3::hash(&png).to_hex().as_str()) {
-        return Err(refuse(format!("{} is not the picture that was judged; {again}", path.display())));
-    }
+    let png = golden::read_judged(&path, case.paths.actual_hash.as_deref()).map_err(refuse)?;
     let picture = golden::decode(&png).map_err(refuse)?;
     if let Some(flaw) = golden::blank(&picture.rgba) {
         return Err(refuse(flaw));

@@ -19,7 +19,7 @@ pub(super) fn github(report: &SuiteReport) -> String {
 }
 
 fn annotation(report: &SuiteReport, case: &CaseReport) -> String {
-    let mut lines: Vec<String> = case.complaints().iter().map(|line| visible(line)).collect();
+    let mut lines: Vec<String> = case.account().iter().map(|line| visible(line)).collect();
     if lines.is_empty() {
         lines.push(format!("{} ({})", case.status.word(), visible(&case.model)));
     }

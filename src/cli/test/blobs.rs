@@ -1,8 +1,8 @@
 //! Pictures beside a report, named by their content: they go where the report goes, and equal ones are one file.
 
-use super::golden::write_in_folders;
 use super::report::{Blobs, CaseReport, Status, SuiteReport};
 use crate::cli::error::CliError;
+use crate::cli::output::write_in_folders;
 use std::path::{Path, PathBuf};
 
 /// Folder of the pictures, beside the report.

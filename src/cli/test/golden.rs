@@ -1,9 +1,11 @@
 //! Goldens: pictures with their provenance, and which pictures can be none.
 
+use super::ingredients::Ingredients;
 use super::report::Provenance;
 use crate::cli::error::CliError;
-use crate::cli::output;
+use crate::cli::output::{self, write_in_folders};
 use crate::scene::RadianceImage;
+use serde::Deserialize;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -19,6 +21,25 @@ pub(super) struct Golden {
     pub(super) rgba: Vec<u8>,
     /// `None` where the file does not say, or says it in a way of another version.
     pub(super) provenance: Option<Provenance>,
+}
+
+/// What stands beside a golden.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Sidecar {
+    #[serde(flatten)]
+    provenance: Provenance,
+    /// What the picture was made of; none where that could not be found out, or was not by an earlier version.
+    #[serde(default)]
+    ingredients: Option<Ingredients>,
+}
+
+/// A [`Sidecar`] as JSON: the provenance for people, then a line for each material and quantity, as there are many numbers.
+fn sidecar_text(provenance: &Provenance, ingredients: Option<&Ingredients>) -> serde_json::Result<String> {
+    let text = serde_json::to_string_pretty(provenance)?;
+    let Some(ingredients) = ingredients else { return Ok(format!("{text}\n")) };
+    let made_of = serde_json::to_string(ingredients)?.replace("{\"name\":", "\n{\"name\":");
+    let head = text.trim_end_matches('}').trim_end();
+    Ok(format!("{head},\n  \"ingredients\": {made_of}\n}}\n"))
 }
 
 /// The PNG of a picture, with its provenance inside.
@@ -53,11 +74,17 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Golden, String> {
     Ok(Golden { width: frame.width, height: frame.height, rgba, provenance })
 }
 
-/// Writes a golden, and its provenance beside it. The golden is last: where there is one, there is its provenance.
+/// Writes a golden, and beside it its provenance and what it was made of. The golden is last: where there is one, there
+/// is its provenance.
 ///
 /// # Errors
 /// When the file is larger than is allowed, or cannot be written; then the one of before is still there.
-pub(super) fn write(path: &Path, png: &[u8], provenance: &Provenance, bytes_max: u64) -> Result<(), CliError> {
+pub(super) fn write(
+    path: &Path,
+    png: &[u8],
+    (provenance, ingredients): (&Provenance, Option<&Ingredients>),
+    bytes_max: u64,
+) -> Result<(), CliError> {
     if png.len() as u64 > bytes_max {
         return Err(CliError::Usage(format!(
             "{}: would have {} KiB, more than the {} KiB of `golden-kib`; make the picture smaller",
@@ -66,21 +93,23 @@ pub(super) fn write(path: &Path, png: &[u8], provenance: &Provenance, bytes_max:
             bytes_max >> 10
         )));
     }
-    let text = serde_json::to_string_pretty(provenance).map_err(|error| CliError::Usage(error.to_string()))?;
-    write_in_folders(&path.with_extension("json"), format!("{text}\n").as_bytes())?;
+    let text = sidecar_text(provenance, ingredients).map_err(|error| CliError::Usage(error.to_string()))?;
+    write_in_folders(&path.with_extension("json"), text.as_bytes())?;
     write_in_folders(path, png)
 }
 
-/// Writes a file, and makes the folders that it is in.
+/// The picture of a run, which has to be the one that was judged, by the hash of its file.
 ///
 /// # Errors
-/// When that is not possible.
-pub(super) fn write_in_folders(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    if let Some(folder) = path.parent() {
-        let failed = |error: std::io::Error| CliError::Write { path: path.to_owned(), reason: error.to_string() };
-        std::fs::create_dir_all(folder).map_err(failed)?;
+/// When it cannot be read, or is another.
+pub(super) fn read_judged(path: &Path, hash: Option<&str>) -> Result<Vec<u8>, String> {
+    let again = "run `specula test` again";
+    let png = std::fs::read(path).map_err(|error| format!("{}: cannot be read: {error}; {again}", path.display()))?;
+    if hash == Some(blake3::hash(&png).to_hex().as_str()) {
+        Ok(png)
+    } else {
+        Err(format!("{} is not the picture that was judged; {again}", path.display()))
     }
-    output::write(path, bytes)
 }
 
 /// Why a picture can be no golden, if it cannot: nothing can be seen in it.
@@ -120,8 +149,16 @@ pub(super) fn picture_hash(width: u32, height: u32, rgba: &[u8]) -> String {
 
 /// The hash that stands beside a golden, if there is one.
 pub(super) fn recorded_hash(golden: &Path) -> Option<String> {
-    let bytes = std::fs::read(golden.with_extension("json")).ok()?;
-    Some(serde_json::from_slice::<Provenance>(&bytes).ok()?.picture_hash)
+    Some(sidecar(golden)?.provenance.picture_hash)
+}
+
+/// What the golden with this hash of its picture was made of, if that stands beside it.
+pub(super) fn ingredients(golden: &Path, picture_hash: &str) -> Option<Ingredients> {
+    sidecar(golden).filter(|sidecar| sidecar.provenance.picture_hash == picture_hash)?.ingredients
+}
+
+fn sidecar(golden: &Path) -> Option<Sidecar> {
+    serde_json::from_slice(&std::fs::read(golden.with_extension("json")).ok()?).ok()
 }
 
 #[cfg(test)]
@@ -138,18 +175,22 @@ mod tests {
     fn goldens_are_read_as_they_were_written() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("set/a/b.png");
+        let ingredients =
+            Ingredients { size_px: [16, 4], scale: 1.0, lights: vec!["a lamp".into()], materials: Vec::new() };
         for alpha in [255, 128] {
             let rgba: Vec<u8> = (0..64).flat_map(|i| [i, 2 * i, 255 - i, alpha]).collect();
             let png = encode(16, 4, &rgba, &provenance()).unwrap();
-            write(&path, &png, &provenance(), 4096).unwrap();
+            write(&path, &png, (&provenance(), Some(&ingredients)), 4096).unwrap();
             let golden = decode(&std::fs::read(&path).unwrap()).unwrap();
             assert_eq!(golden, Golden { width: 16, height: 4, rgba, provenance: Some(provenance()) });
-            assert!(write(&path, &png, &provenance(), 10).unwrap_err().to_string().contains("golden-kib"));
+            assert!(write(&path, &png, (&provenance(), None), 10).unwrap_err().to_string().contains("golden-kib"));
             assert!(decode(&png[..png.len() / 2]).is_err());
         }
         let sidecar: Provenance = serde_json::from_slice(&std::fs::read(path.with_extension("json")).unwrap()).unwrap();
         assert_eq!(sidecar, provenance());
-        assert_eq!(recorded_hash(&path), Some(sidecar.picture_hash));
+        assert_eq!(recorded_hash(&path).as_ref(), Some(&sidecar.picture_hash));
+        assert_eq!(super::ingredients(&path, &sidecar.picture_hash), Some(ingredients));
+        assert_eq!(super::ingredients(&path, "of another picture"), None);
         assert_eq!(recorded_hash(&folder.path().join("none.png")), None);
         assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 2, "nothing else is left");
     }

@@ -1,14 +1,18 @@
 //! What a picture is worth: the golden beside it, the limits, and what is left for people to look at.
 
 use super::comparison::{Comparison, compare, read_golden};
+use super::drawing::Drawn;
 use super::golden;
 use super::limits::Compared;
 use super::report::{AdapterReport, Blobs, CaseReport, Kind, MetricReport, Paths, Provenance, Status, Times};
-use super::stage::Drawn;
 use super::suite::{Case, Suite, default_out};
 use crate::cli::error::CliError;
+use crate::cli::output;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Name of the condition that `--repeat` makes.
+pub(super) const REPETITIONS: &str = "repeat.pixels";
 
 /// Which goldens a run writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -60,6 +64,8 @@ pub(super) fn without_picture(case: &Case, status: Status, reason: Option<String
         blobs: Blobs::default(),
         provenance: None,
         golden_provenance: None,
+        moved: Vec::new(),
+        ingredients: None,
         accept: None,
         golden_written: false,
         times: Times::default(),
@@ -114,7 +120,7 @@ impl Trial<'_> {
         let flaw = || self.drawn.fault.clone().or_else(|| golden::blank(&self.drawn.rgba));
         let Some((bytes, golden)) = read_golden(&path)? else {
             self.report.status = Status::New;
-            return self.propose(&path, flaw());
+            return self.propose(flaw());
         };
         if let Some(problem) = golden::blank(&golden.rgba) {
             return Err(CliError::Usage(format!("{}: is no golden: {problem}; remove it", path.display())));
@@ -140,35 +146,18 @@ impl Trial<'_> {
             self.fail(None);
         }
         let has_failed = self.report.status == Status::Fail;
-        if has_failed || (self.judge.update == Some(Update::All) && !is_equal) {
-            self.propose(&path, flaw)
-        } else {
-            Ok(())
-        }
+        if has_failed || (self.judge.update == Some(Update::All) && !is_equal) { self.propose(flaw) } else { Ok(()) }
     }
 
-    /// Makes the picture the golden, or says how to, or why it cannot be one.
-    fn propose(&mut self, golden: &Path, flaw: Option<String>) -> Result<(), CliError> {
-        let png = self.actual()?;
+    /// Says how to make the picture the golden, or why it cannot be one.
+    fn propose(&mut self, flaw: Option<String>) -> Result<(), CliError> {
+        self.actual()?;
         if let Some(flaw) = flaw {
             self.report.reason = Some(format!("{flaw}; such a picture cannot become a golden"));
             return Ok(());
         }
-        let is_new = self.report.status == Status::New;
-        let Judge { suite, out, update, .. } = *self.judge;
-        let is_wanted = match update {
-            None => false,
-            Some(Update::New) => is_new,
-            Some(Update::Changed) => !is_new,
-            Some(Update::All) => true,
-        };
-        if is_wanted {
-            golden::write(golden, &png, &self.provenance, suite.golden_bytes_max)?;
-            (self.report.status, self.report.golden_written) = (Status::Pass, true);
-            self.report.reason = Some("the picture has become the golden".into());
-        } else {
-            self.report.accept = Some(accept_command(&suite.file, &self.case.id, out));
-        }
+        let Judge { suite, out, .. } = *self.judge;
+        self.report.accept = Some(accept_command(&suite.file, &self.case.id, out));
         Ok(())
     }
 
@@ -210,7 +199,7 @@ impl Trial<'_> {
         }
         let path = self.file("truth.png");
         let truth = self.encode(self.drawn.truth.as_deref().unwrap_or_default(), &path)?;
-        golden::write_in_folders(&path, &truth)?;
+        output::write_in_folders(&path, &truth)?;
         self.report.paths.golden = Some(path.clone());
         let limits = self.judge.suite.limits(self.case, &self.judge.adapter.class);
         let compared = compare(&actual, (&truth, &path), limits, self.case.mask.as_deref())?;
@@ -223,8 +212,8 @@ impl Trial<'_> {
         self.report.metrics = compared.metrics;
         let Some([difference, heat_map]) = compared.pictures else { return Ok(()) };
         let files = [self.file("difference.png"), self.file("flip.png")];
-        golden::write_in_folders(&files[0], &difference)?;
-        golden::write_in_folders(&files[1], &heat_map)?;
+        output::write_in_folders(&files[0], &difference)?;
+        output::write_in_folders(&files[1], &heat_map)?;
         let [difference, heat_map] = files;
         (self.report.paths.difference, self.report.paths.heat_map) = (Some(difference), Some(heat_map));
         Ok(())
@@ -233,7 +222,7 @@ impl Trial<'_> {
     fn check_repetitions(&mut self) {
         let Some(differing) = self.drawn.differing_when_repeated else { return };
         self.report.metrics.push(MetricReport {
-            name: "repeat.pixels".into(),
+            name: REPETITIONS.into(),
             value: Some(differing as f64),
             comparison: "<=".into(),
             limit: 0.0,
@@ -266,7 +255,7 @@ impl Trial<'_> {
         }
         let path = self.file("actual.png");
         let png = self.encode(&self.drawn.rgba, &path)?;
-        golden::write_in_folders(&path, &png)?;
+        output::write_in_folders(&path, &png)?;
         self.report.paths.actual_hash = Some(blake3::hash(&png).to_hex().to_string());
         self.report.paths.actual = Some(path);
         self.png = Some(png.clone());

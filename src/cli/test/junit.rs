@@ -41,7 +41,7 @@ fn test_case(suite: &str, case: &CaseReport) -> TestCase {
 }
 
 fn status(case: &CaseReport) -> TestCaseStatus {
-    let complaints: Vec<String> = case.complaints().iter().map(|line| visible(line)).collect();
+    let complaints: Vec<String> = case.account().iter().map(|line| visible(line)).collect();
     let mut status = match case.status {
         Status::Pass => return TestCaseStatus::success(),
         Status::Skipped => TestCaseStatus::skipped(),

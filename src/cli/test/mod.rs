@@ -8,7 +8,9 @@ mod annotations;
 mod blobs;
 mod comparison;
 mod date;
+mod drawing;
 mod golden;
+mod ingredients;
 mod judge;
 mod junit;
 mod limits;
@@ -21,13 +23,14 @@ mod report;
 mod run;
 #[cfg(test)]
 mod schema;
-mod stage;
+mod second_look;
 mod suite;
 mod text;
 mod verdicts;
 
 pub(super) use accept::{AcceptArgs, run as accept};
 pub(super) use merge::{MergeArgs, run as merge};
+pub(super) use partition::{PartitionRequest, Share};
 
 use super::driver::DeviceArgs;
 use super::environment::CacheArgs;
@@ -108,6 +111,7 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     }
     let out = args.out.clone().unwrap_or_else(|| suite.default_out());
     publish::forget(&out)?;
+    suite.clear_stale_goldens();
     let progress = StderrProgress::new(args.quiet);
     let judge = Judge { suite: &suite, adapter: &adapter, out: &out, update: args.update, times: args.repeat };
     let plan = Plan { cases: &cases, judge: &judge, jobs: args.jobs.into(), cache: &args.cache };

@@ -30,7 +30,7 @@ impl PartArgs {
                 "--partition weight and --times, the folder of an earlier run, go together".into(),
             ));
         }
-        let partition = request.resolve(|name| std::env::var(name).ok().filter(|value| !value.is_empty()))?;
+        let partition = request.resolve_here()?;
         let earlier = self.times.as_deref().map(SuiteReport::read).transpose()?;
         let known = earlier.iter().flat_map(|report| &report.cases);
         let times: HashMap<&str, f64> = known.map(|case| (case.id.as_str(), case.milliseconds())).collect();

@@ -21,7 +21,7 @@ const SCHEMES: [(&str, Scheme); 3] = [("slice", Scheme::Slice), ("hash", Scheme:
 
 /// As it was asked for; what is not said comes from the scheduler that has started the process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct PartitionRequest {
+pub(in crate::cli) struct PartitionRequest {
     scheme: Scheme,
     number: Option<usize>,
     of: Option<usize>,
@@ -103,7 +103,7 @@ impl Scheduler {
 
 /// A part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Partition {
+pub(in crate::cli) struct Partition {
     scheme: Scheme,
     number: usize,
     of: usize,
@@ -111,15 +111,15 @@ pub(super) struct Partition {
 
 /// What is shared.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Share<'a> {
-    pub(super) id: &'a str,
+pub(in crate::cli) struct Share<'a> {
+    pub(in crate::cli) id: &'a str,
     /// How long it took in an earlier run, as far as known.
-    pub(super) milliseconds: Option<f64>,
+    pub(in crate::cli) milliseconds: Option<f64>,
 }
 
 impl PartitionRequest {
     /// Whether the times of an earlier run matter.
-    pub(super) fn is_by_weight(&self) -> bool {
+    pub(in crate::cli) fn is_by_weight(&self) -> bool {
         self.scheme == Scheme::Weight
     }
 
@@ -129,6 +129,14 @@ impl PartitionRequest {
     /// Where neither the request nor one scheduler says which part this is, and of how many.
     pub(super) fn resolve(&self, variable: impl Fn(&str) -> Option<String>) -> Result<Partition, CliError> {
         self.place(variable).map_err(|reason| CliError::Usage(format!("--partition: {reason}")))
+    }
+
+    /// The same by the environment of this process.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub(in crate::cli) fn resolve_here(&self) -> Result<Partition, CliError> {
+        self.resolve(|name| std::env::var(name).ok().filter(|value| !value.is_empty()))
     }
 
     fn place(&self, variable: impl Fn(&str) -> Option<String>) -> Result<Partition, String> {
@@ -165,7 +173,7 @@ impl PartitionRequest {
 impl Partition {
     /// Indices of the cases of this part, ascending. Each case is in one part, whatever the other parts do: all have to be
     /// given the same cases and times.
-    pub(super) fn select(&self, cases: &[Share<'_>]) -> Vec<usize> {
+    pub(in crate::cli) fn select(&self, cases: &[Share<'_>]) -> Vec<usize> {
         let (part, of) = (self.number - 1, self.of);
         match self.scheme {
             Scheme::Slice => (cases.len() * part / of..cases.len() * (part + 1) / of).collect(),

@@ -1,7 +1,7 @@
 //! The files of a finished run: the page for people, JUnit XML for CI systems, JSON for all else.
 
 use super::report::{self, SuiteReport};
-use super::{annotations, golden, junit, page};
+use super::{annotations, junit, page};
 use crate::cli::error::CliError;
 use crate::cli::output;
 use std::path::Path;
@@ -26,8 +26,8 @@ pub(super) struct PublishArgs {
 /// When a file cannot be written.
 pub(super) fn publish(report: &SuiteReport, folder: &Path, args: &PublishArgs) -> Result<(), CliError> {
     let limit = u64::from(args.page_limit) << 20;
-    golden::write_in_folders(&folder.join(PAGE), page::html(report, folder, limit)?.as_bytes())?;
-    golden::write_in_folders(&folder.join(JUNIT), junit::xml(report)?.as_bytes())?;
+    output::write_in_folders(&folder.join(PAGE), page::html(report, folder, limit)?.as_bytes())?;
+    output::write_in_folders(&folder.join(JUNIT), junit::xml(report)?.as_bytes())?;
     report.write(folder)?;
     if args.github {
         output::write(Path::new("-"), annotations::github(report).as_bytes())?;
@@ -35,11 +35,13 @@ pub(super) fn publish(report: &SuiteReport, folder: &Path, args: &PublishArgs) -
     Ok(())
 }
 
-/// Takes away what an earlier run has reported: if this one is interrupted, nobody shall take that for its report.
+/// Takes away what an earlier run has reported: if this one is interrupted, nobody shall take that for its report. What
+/// killed runs have left half written goes too.
 ///
 /// # Errors
 /// When it is there and stays.
 pub(super) fn forget(folder: &Path) -> Result<(), CliError> {
+    output::clear_stale_below(folder);
     for name in [report::FILE_NAME, PAGE, JUNIT] {
         let path = folder.join(name);
         match std::fs::remove_file(&path) {

@@ -1,7 +1,8 @@
 //! What a run of a suite leaves: `report.json`, and what it consists of.
 
-use super::golden::write_in_folders;
+use super::ingredients::{Finding, Ingredients};
 use crate::cli::error::CliError;
+use crate::cli::output::write_in_folders;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -111,6 +112,12 @@ pub(in crate::cli) struct CaseReport {
     pub(in crate::cli) provenance: Option<Provenance>,
     /// Of the golden, as far as it says.
     pub(in crate::cli) golden_provenance: Option<Provenance>,
+    /// What has moved since the golden was drawn, where the case fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(in crate::cli) moved: Vec<Finding>,
+    /// Of the picture of this run, where it could become the golden.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(in crate::cli) ingredients: Option<Ingredients>,
     /// The command that makes the picture of this run the golden, where that would help.
     pub(in crate::cli) accept: Option<String>,
     /// What happened to the golden in this run.
@@ -280,6 +287,8 @@ pub(in crate::cli) mod tests {
                 blobs: Blobs::default(),
                 provenance: Some(provenance.clone()),
                 golden_provenance: None,
+                moved: Vec::new(),
+                ingredients: None,
                 accept: is_failure.then(|| "specula accept suite.toml helmet".into()),
                 golden_written: false,
                 times: Times::default(),

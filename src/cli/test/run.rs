@@ -1,16 +1,18 @@
 //! A run: one thread draws, others judge.
 
 use super::date::today;
+use super::drawing::Drawn;
 use super::judge::{Judge, without_picture};
 use super::report::{CaseReport, Status};
-use super::stage::{Drawn, Stage};
 use super::suite::Case;
 use crate::cli::environment::CacheArgs;
 use crate::cli::error::CliError;
+use crate::cli::stage::Stage;
 use crate::gpu::Gpu;
 use crate::progress::{Progress, Silent};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 /// What is drawn and how it is judged.
 pub(super) struct Plan<'a> {
@@ -32,11 +34,12 @@ impl Plan<'_> {
         // Pictures that wait to be judged are in memory.
         let (sender, receiver) = sync_channel(self.jobs);
         let receiver = Mutex::new(receiver);
+        let mut stage = Stage::new(gpu, self.cache, &Silent);
         std::thread::scope(|scope| {
             for _ in 0..self.jobs {
                 scope.spawn(|| self.judge_all(&receiver, &reports));
             }
-            self.draw_all(gpu, &sender, &reports, progress);
+            self.draw_all(&mut stage, &sender, &reports, progress);
             // No more are to come.
             drop(sender);
         });
@@ -45,22 +48,41 @@ impl Plan<'_> {
             let lost = || without_picture(case, Status::Error, Some("was not judged; please report this".into()));
             report.unwrap_or_else(lost)
         };
-        self.cases.iter().zip(reports).map(report).collect()
+        let mut reports: Vec<CaseReport> = self.cases.iter().zip(reports).map(report).collect();
+        self.look_again(&mut stage, &mut reports, progress);
+        reports
     }
 
-    fn draw_all(
-        &self,
-        gpu: &Gpu,
+    /// Draws what failing and new pictures are made of.
+    fn look_again<'a>(&'a self, stage: &mut Stage<'a>, reports: &mut [CaseReport], progress: &dyn Progress) {
+        let wanted = |index: &usize| self.judge.wants_second_look(&reports[*index]);
+        // Backwards: what was loaded last is still there.
+        let again: Vec<usize> = self.order().into_iter().rev().filter(wanted).collect();
+        if again.is_empty() {
+            return;
+        }
+        progress.begin("Finding out what has moved", again.len() as u64);
+        for index in again {
+            let start = Instant::now();
+            let (case, report) = (self.cases[index], &mut reports[index]);
+            self.judge.look_again(case, report, stage.ingredients(case));
+            report.times.judge_ms += start.elapsed().as_secs_f64() * 1e3;
+            progress.advance(1);
+        }
+    }
+
+    fn draw_all<'a>(
+        &'a self,
+        stage: &mut Stage<'a>,
         sender: &SyncSender<Job>,
         reports: &[Mutex<Option<CaseReport>>],
         progress: &dyn Progress,
     ) {
-        let mut stage = Stage::new(gpu, self.cache, &Silent);
         for index in self.order() {
             let case = self.cases[index];
             let drawn = match skip_reason(case) {
                 Some(reason) => Err((Status::Skipped, reason)),
-                None => self.draw(&mut stage, case).map_err(|error| (Status::Error, error.to_string())),
+                None => self.draw(stage, case).map_err(|error| (Status::Error, error.to_string())),
             };
             match drawn {
                 // Nobody receives when all judges have panicked; that is told when they are joined.

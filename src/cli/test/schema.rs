@@ -1,5 +1,6 @@
 //! `docs/report.schema.json` says what `report.json` holds: it is checked against reports, and reports against it.
 
+use super::ingredients::{Finding, Ingredients, MaterialIngredients, Quantity, TextureHash};
 use super::report::tests::example;
 use super::report::{Blobs, PartReport, SCHEMA, SuiteReport};
 use serde_json::{Map, Value, json};
@@ -96,8 +97,24 @@ fn full() -> SuiteReport {
     for case in &mut report.cases {
         case.blobs = Blobs { actual: hash(), golden: hash(), difference: hash(), heat_map: hash() };
         case.golden_provenance = case.provenance.clone();
+        case.moved = vec![Finding::unknown("a reason")];
+        case.ingredients = Some(ingredients());
     }
     report
+}
+
+fn ingredients() -> Ingredients {
+    let quantity = Quantity { name: "metallic".into(), mean: [0.5; 3], spread: [0.1; 3], sketch: "00".repeat(64) };
+    let texture = TextureHash { slot: "base_color".into(), hash: "0f".repeat(8) };
+    let material = MaterialIngredients {
+        name: "paint".into(),
+        pixels: 12,
+        measured: 6,
+        center_px: [3.5, 4.0],
+        textures: vec![texture],
+        quantities: vec![quantity],
+    };
+    Ingredients { size_px: [8, 8], scale: 2.0, lights: vec!["a lamp".into()], materials: vec![material] }
 }
 
 /// Pointers of all fields of the value, with the items of an array taken together.

@@ -2,6 +2,7 @@
 
 use super::publish;
 use super::report::{CaseReport, Kind, MetricReport, Status, SuiteReport};
+use super::verdicts::visible;
 use crate::cli::compare::number;
 use std::fmt::Write;
 use std::path::Path;
@@ -62,6 +63,9 @@ fn write_case(text: &mut String, case: &CaseReport) -> std::fmt::Result {
         if let Some(path) = path {
             writeln!(text, "        {name:10} {}", path.display())?;
         }
+    }
+    for finding in &case.moved {
+        writeln!(text, "        {:10} {}", "moved", visible(&finding.text))?;
     }
     if let Some(changed) = changed(case) {
         writeln!(text, "        {:10} {changed}", "changed")?;

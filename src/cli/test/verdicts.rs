@@ -53,6 +53,12 @@ impl CaseReport {
         self.reason.iter().cloned().chain(no_golden).chain(broken).collect()
     }
 
+    /// The same, and then what has moved.
+    pub(super) fn account(&self) -> Vec<String> {
+        let moved = self.moved.iter().map(|finding| format!("moved: {}", finding.text));
+        self.complaints().into_iter().chain(moved).collect()
+    }
+
     pub(super) fn milliseconds(&self) -> f64 {
         self.times.load_ms + self.times.draw_ms + self.times.judge_ms
     }

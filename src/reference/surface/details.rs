@@ -48,6 +48,11 @@ impl World<'_> {
         }
     }
 
+    /// Index of the material of a hit, in [`crate::scene::Scene::materials`].
+    pub fn material(&self, hit: &Hit) -> usize {
+        self.point(hit).draw.primitive.material
+    }
+
     /// Texture coordinates of a hit in one of the sets of its primitive, before any transform.
     pub fn uv(&self, hit: &Hit, set: usize) -> Option<DVec2> {
         let point = self.point(hit);

@@ -63,6 +63,9 @@ fn kill(moments: u32) {
     assert_eq!(ran.report["cases"].as_array().unwrap().len(), 12);
     fixture.run("test", &[]).expect(0);
     assert_whole(&fixture);
+    // What the killed ones have left is gone.
+    let left = [files(&fixture.path("s.out")), files(&fixture.path("s.goldens"))].concat();
+    assert!(left.iter().all(|path| path.extension().is_none_or(|ending| ending != "tmp")), "{left:?}");
 }
 
 #[test]

@@ -22,39 +22,127 @@ fn caught(fixture: &Fixture, what: &str) -> Ran {
     ran
 }
 
+/// What is said of one thing that has moved.
+fn moved<'a>(ran: &'a Ran, what: &str) -> Vec<&'a str> {
+    let found = ran.case("sphere")["moved"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let of = found.iter().filter(|finding| finding["moved"] == what);
+    of.map(|finding| finding["text"].as_str().unwrap()).collect()
+}
+
+/// A fault to plant, and how it has to be attributed: what has moved, and words of the sentence.
+struct Plant {
+    what: &'static str,
+    plant: fn(&Fixture),
+    moved: &'static str,
+    words: &'static [&'static str],
+}
+
+const PLANTS: [Plant; 5] = [
+    Plant {
+        what: "a swapped texture",
+        plant: |fixture| fixture.texture(|x, y| [if (x / 8 + y / 8) % 2 == 0 { 40 } else { 220 }, 120, 60]),
+        moved: "material",
+        words: &["material \"ball\": base-color differs by about 0.", "another base_color texture"],
+    },
+    Plant {
+        what: "a change of perceptual roughness",
+        plant: |fixture| fixture.model(&Model { perceptual_roughness: 0.45, ..Model::default() }),
+        moved: "material",
+        words: &[
+            "material \"ball\": perceptual-roughness 0.300 -> 0.450, and so direct-",
+            "direct-specular",
+            "ibl-specular",
+        ],
+    },
+    Plant {
+        what: "a missing light",
+        plant: |fixture| fixture.model(&Model { light_cd: None, ..Model::default() }),
+        moved: "lights",
+        words: &["no longer there: point light of 20 cd at (2, 2, 3) m; with it direct-diffuse, direct-specular"],
+    },
+    Plant {
+        what: "a shift by one pixel",
+        plant: |fixture| {
+            fixture
+                .suite(&CASE.replace("eye = [0, 0, 3]", "eye = [0.025, 0, 3]").replace("[0, 0, 0]", "[0.025, 0, 0]"));
+        },
+        moved: "geometry",
+        words: &["all that is seen has moved by -1.00 pixels to the right and +0.00 down"],
+    },
+    Plant {
+        what: "a colour that is no longer multiplied",
+        plant: |fixture| fixture.model(&Model { textured: false, ..Model::default() }),
+        moved: "material",
+        words: &["material \"ball\": base-color (", "-> 1.000", "no base_color texture any more"],
+    },
+];
+
 #[test]
-fn planted_regressions_are_caught() {
+fn planted_regressions_are_caught_and_attributed() {
     let fixture = Fixture::new();
     fixture.bless();
     let golden = std::fs::read(fixture.golden("sphere")).unwrap();
-    fixture.run("test", &[]).expect(0);
-    type Plant = fn(&Fixture);
-    let plants: [(&str, Plant); 5] = [
-        ("a swapped texture", |fixture| {
-            fixture.texture(|x, y| [if (x / 8 + y / 8) % 2 == 0 { 40 } else { 220 }, 120, 60]);
-        }),
-        ("a change of perceptual roughness", |fixture| {
-            fixture.model(&Model { perceptual_roughness: 0.45, ..Model::default() });
-        }),
-        ("a missing light", |fixture| fixture.model(&Model { light_cd: None, ..Model::default() })),
-        ("a shift by one pixel", |fixture| {
-            fixture
-                .suite(&CASE.replace("eye = [0, 0, 3]", "eye = [0.025, 0, 3]").replace("[0, 0, 0]", "[0.025, 0, 0]"));
-        }),
-        ("a colour that is no longer multiplied", |fixture| {
-            fixture.model(&Model { textured: false, ..Model::default() });
-        }),
-    ];
-    for (what, plant) in plants {
+    let passed = fixture.run("test", &[]).expect(0);
+    assert!(passed.case("sphere")["moved"].is_null() && passed.case("sphere")["ingredients"].is_null());
+    for Plant { what, plant, moved: kind, words } in PLANTS {
         plant(&fixture);
         let ran = caught(&fixture, what);
         assert!(ran.case("sphere")["accept"].is_string(), "{what}");
         assert_eq!(std::fs::read(fixture.golden("sphere")).unwrap(), golden, "{what} has changed the golden");
+        let found = ran.case("sphere")["moved"].as_array().unwrap();
+        let [text] = moved(&ran, kind)[..] else { panic!("{what}: {found:?}") };
+        assert_eq!(found.len(), 1, "{what}: {found:?}");
+        for word in words {
+            assert!(text.contains(word), "{what}: {text}");
+        }
+        // In every form of the report.
+        assert!(ran.stdout.contains(&format!("moved      {text}\n")), "{what}: {}", ran.stdout);
+        let quoted = text.replace('"', "&quot;").replace('>', "&gt;");
+        for file in ["junit.xml", "report.html"] {
+            let report = std::fs::read_to_string(fixture.path("s.out").join(file)).unwrap();
+            assert!(report.contains(&quoted) || report.contains(&text.replace('>', "&gt;")), "{what}: {file}");
+        }
         fixture.texture(|x, y| [if (x / 8 + y / 8) % 2 == 0 { 220 } else { 40 }, 120, 60]);
         fixture.model(&Model::default());
         fixture.suite(CASE);
     }
     fixture.run("test", &[]).expect(0);
+}
+
+#[test]
+fn what_comes_after_the_light_is_told_by_what_is_the_same() {
+    let fixture = Fixture::new();
+    fixture.bless();
+    fixture.suite(&format!("{CASE}exposure = 0.5\n"));
+    let ran = caught(&fixture, "an exposure");
+    assert!(moved(&ran, "display")[0].contains("all parts of the light are the same"), "{}", ran.stdout);
+    fixture.suite(&format!("{CASE}energy-compensation = \"off\"\n"));
+    fixture.model(&Model { perceptual_roughness: 1.0, ..Model::default() });
+    fixture.bless();
+    fixture.suite(&format!("{CASE}thresholds = [\"pixels <= 0\"]\n"));
+    let ran = fixture.run("test", &[]).expect(1);
+    let text = moved(&ran, "shading")[0];
+    assert!(text.contains("-multiple-scattering 0 -> ") && text.ends_with("so its shading is not"), "{text}");
+}
+
+#[test]
+fn accepting_keeps_what_the_golden_is_made_of() {
+    let fixture = Fixture::new();
+    fixture.run("test", &[]).expect(1);
+    fixture.run("accept", &[]).expect(0);
+    fixture.model(&Model { perceptual_roughness: 0.45, ..Model::default() });
+    let ran = caught(&fixture, "a change of perceptual roughness");
+    assert_eq!(moved(&ran, "material").len(), 1, "{}", ran.stdout);
+    // Of a golden that came from elsewhere nothing is claimed.
+    let sidecar = fixture.golden("sphere").with_extension("json");
+    let text = std::fs::read_to_string(&sidecar).unwrap();
+    let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    value["picture_hash"] = "of another".into();
+    for other in [value.to_string(), "{}".into()] {
+        std::fs::write(&sidecar, other).unwrap();
+        let ran = caught(&fixture, "a change of perceptual roughness");
+        assert!(moved(&ran, "unknown")[0].contains("nothing is kept"), "{}", ran.stdout);
+    }
 }
 
 #[test]
@@ -64,12 +152,21 @@ fn black_frames_and_nan_are_caught_and_never_become_goldens() {
     let golden = std::fs::read(fixture.golden("sphere")).unwrap();
     let dark = format!("{CASE}env = \"black\"\nbackground = \"#000000\"\n");
     let infinite = format!("{CASE}env-intensity = 3e38\n");
-    for (suite, reason) in [(&dark, "the picture is blank: #000000"), (&infinite, "is infinite")] {
+    // The lobe of a black surface takes nothing of an infinite illuminance, which is no number.
+    let no_number =
+        format!("{CASE}light = [\"point:intensity=3e38cd,at=0,0,1.3\"]\noverride = [\"ball.base_color=#000000\"]\n");
+    let broken = [
+        (&dark, "the picture is blank: #000000", "lights", "no longer there: environment neutral of intensity 1"),
+        (&infinite, "is infinite", "fault", "material \"ball\": radiance is infinite in "),
+        (&no_number, "the radiance of pixel (", "fault", "material \"ball\": radiance is NaN in "),
+    ];
+    for (suite, reason, kind, words) in broken {
         fixture.model(&Model { light_cd: None, ..Model::default() });
         fixture.suite(suite);
         let ran = caught(&fixture, reason);
         let case = ran.case("sphere");
         assert!(case["reason"].as_str().unwrap().contains(reason) && case["accept"].is_null(), "{case}");
+        assert!(moved(&ran, kind).iter().any(|text| text.contains(words)), "{words}: {}", ran.stdout);
         // Not even when that is asked for.
         let ran = fixture.run("test", &["--update", "all"]).expect(1);
         assert!(ran.stdout.contains("cannot become a golden"), "{}", ran.stdout);

@@ -119,6 +119,7 @@ fn of_case(case: &CaseReport, shown: &Shown, is_open: bool) -> Markup {
                 @if !complaints.is_empty() {
                     ul.complaints { @for line in &complaints { li { (name(line)) } } }
                 }
+                @if !case.moved.is_empty() { (moved(case)) }
                 (stage(case, shown))
                 @if let Some(command) = &case.accept { (accept(command)) }
                 @if !case.metrics.is_empty() { (metrics(&case.metrics)) }
@@ -182,6 +183,13 @@ fn stage(case: &CaseReport, shown: &Shown) -> Markup {
                 }
             }
         }
+    }
+}
+
+fn moved(case: &CaseReport) -> Markup {
+    html! {
+        h2 { "What has moved since the golden" }
+        ul.moved { @for finding in &case.moved { li { (name(&finding.text)) } } }
     }
 }
 

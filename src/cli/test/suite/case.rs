@@ -1,9 +1,10 @@
 //! Cases: one table of the file, and what its matrix makes of it.
 
-use super::flags::{self, CaseArgs, Flag};
+use super::flags::Flag;
 use super::table::{Source, Table, Value};
 use super::{Defaults, limits_of};
 use crate::cli::error::CliError;
+use crate::cli::shot::{self, ShotArgs};
 use crate::cli::test::limits::Limit;
 use crate::cli::test::report::Kind;
 use std::path::{Path, PathBuf};
@@ -39,7 +40,7 @@ pub(in crate::cli::test) struct Case {
     pub(in crate::cli::test) model: String,
     /// Flags in the order of their names, as the suite has them.
     pub(in crate::cli::test) settings: Vec<String>,
-    pub(in crate::cli::test) args: CaseArgs,
+    pub(in crate::cli::test) args: ShotArgs,
     /// `None` where those of the adapter's class or of `[defaults]` are meant.
     pub(in crate::cli::test) limits: Option<Vec<Limit>>,
     pub(in crate::cli::test) mask: Option<PathBuf>,
@@ -153,7 +154,7 @@ impl Own {
         if self.kind == Kind::Furnace {
             arguments.extend(["--env=white", "--background=transparent"].map(str::to_owned));
         }
-        let mut args = flags::parse(&folder.join(&model), &arguments).map_err(|(name, problem)| {
+        let mut args = shot::parse(&folder.join(&model), &arguments).map_err(|(name, problem)| {
             let flag = flags.iter().find(|flag| Some(&flag.name) == name.as_ref());
             source.error(flag.map_or(line, |flag| flag.line), format!("case {id}: {problem}"))
         })?;
@@ -182,9 +183,8 @@ impl Own {
 /// The flags of a case in the order of their names: a default gives way to the case's own, and those to the matrix.
 fn merged(defaults: &Defaults, own: &[Flag], varying: Vec<Flag>, kind: Kind) -> Vec<Flag> {
     let mut flags = varying;
-    let suits = |flag: &&Flag| {
-        (kind == Kind::Reference || !flags::is_of_reference(&flag.name)) && !is_foreign(&flag.name, kind)
-    };
+    let suits =
+        |flag: &&Flag| (kind == Kind::Reference || !shot::is_of_reference(&flag.name)) && !is_foreign(&flag.name, kind);
     for flag in own.iter().chain(defaults.flags.iter().filter(suits)) {
         if !flags.iter().any(|other| other.name == flag.name) {
             flags.push(flag.clone());
@@ -199,7 +199,7 @@ fn is_foreign(name: &str, kind: Kind) -> bool {
 }
 
 fn own_flags(table: &Table<'_>, kind: Kind) -> Result<Vec<Flag>, CliError> {
-    let known = flags::names();
+    let known = shot::names();
     let flag = |value: &Value<'_>| {
         check_flag(value, &known, kind, || {
             let keys: Vec<&str> = KEYS.into_iter().chain(known.iter().map(String::as_str)).collect();
@@ -219,7 +219,7 @@ fn check_flag(
     let name = &value.key;
     if !known.contains(name) {
         Err(unknown())
-    } else if kind != Kind::Reference && flags::is_of_reference(name) {
+    } else if kind != Kind::Reference && shot::is_of_reference(name) {
         Err(value.error(format!("`{name}` is of the reference renderer; it is for cases with kind = \"reference\"")))
     } else if is_foreign(name, kind) {
         Err(value.error(format!("a furnace has white surroundings and no other light; leave out `{name}`")))
@@ -231,7 +231,7 @@ fn check_flag(
 /// The lists of a matrix: for each key what it can be.
 fn matrix(value: &Value<'_>, kind: Kind) -> Result<Vec<Vec<Flag>>, CliError> {
     let table = value.table()?;
-    let known = flags::names();
+    let known = shot::names();
     let mut axes = Vec::new();
     for axis in table.rest() {
         if axis.key != "model" {

@@ -7,12 +7,12 @@ mod table;
 mod tests;
 
 pub(super) use case::Case;
-pub(super) use flags::CaseArgs;
 
 use super::limits::Limit;
 use crate::cli::environment::CacheArgs;
 use crate::cli::error::CliError;
 use crate::cli::glob;
+use crate::cli::output;
 use flags::Flag;
 use std::path::{Path, PathBuf};
 use table::{Source, Table, Value};
@@ -164,6 +164,11 @@ impl Suite {
         self.goldens.join(set).join(format!("{id}.png"))
     }
 
+    /// Removes what killed runs have left among the goldens.
+    pub(super) fn clear_stale_goldens(&self) {
+        output::clear_stale_below(&self.goldens);
+    }
+
     /// The limits of a case: its own, those of the first class that the adapter is of, or the defaults.
     pub(super) fn limits<'a>(&'a self, case: &'a Case, class: &str) -> &'a [Limit] {
         let of_class = || self.of_classes.iter().find(|(pattern, _)| glob::matches(pattern, class));
@@ -202,7 +207,7 @@ impl Defaults {
     fn parse(table: &Table<'_>) -> Result<Self, CliError> {
         let limits = table.take("thresholds").map(limits_of).transpose()?;
         let mask = table.take("mask").map(|value| value.string().map(PathBuf::from)).transpose()?;
-        let known = flags::names();
+        let known = crate::cli::shot::names();
         let flag = |value: &Value<'_>| {
             if known.contains(&value.key) {
                 return Flag::of(value);
