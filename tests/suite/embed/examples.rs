@@ -5,6 +5,9 @@ use glam::UVec2;
 use specula::gpu::formats::Precision;
 use specula::scene::Scene;
 
+#[cfg(feature = "view")]
+#[path = "../../../examples/embed_egui.rs"]
+mod embed_egui;
 #[path = "../../../examples/embed_encode.rs"]
 mod embed_encode;
 #[path = "../../../examples/minimal.rs"]
@@ -47,6 +50,34 @@ fn a_model_hides_and_is_hidden_in_a_host_s_frame() {
     let [green, green_alone] = [&with, &without].map(|picture| count(picture, 1, 0));
     println!("{green} of {green_alone} green pixels");
     assert!(green > 200 && green + 200 < green_alone, "{green} of {green_alone} pixels of the green pillar");
+}
+
+#[cfg(feature = "view")]
+#[test]
+fn egui_lays_a_model_out_among_its_widgets() {
+    use embed_egui::{Desk, SIZE_PX, Widgets};
+    let gpu = gpu(Precision::Half);
+    let model = || specula::import::model_from_path("assets/showcase.glb".as_ref(), &Default::default()).unwrap().scene;
+    let mut desk = Desk::new(&gpu, &model()).unwrap();
+    let mut picture = |turn_rad, exposure_ev| desk.picture(&gpu, &Widgets { turn_rad, exposure_ev }).unwrap();
+    let [front, turned, bright] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(turn, exposure)| picture(turn, exposure));
+    assert!(picture(0.0, 0.0) == front, "nothing of the frames before is left");
+    let mut nothing = model();
+    nothing.nodes.iter_mut().for_each(|node| node.mesh = None);
+    let nothing =
+        Desk::new(&gpu, &nothing).unwrap().picture(&gpu, &Widgets { turn_rad: 0.0, exposure_ev: 0.0 }).unwrap();
+    // The parts that egui gives to its panel and to the model, and the middle of the window over that.
+    let differing = |a: &[u8], b: &[u8], x: std::ops::Range<u32>, y: std::ops::Range<u32>| {
+        let all = y.flat_map(|y| x.clone().map(move |x| UVec2::new(x, y)));
+        all.filter(|&at| texel(a, SIZE_PX.x, at) != texel(b, SIZE_PX.x, at)).count()
+    };
+    for (other, least) in [(&nothing, 6000), (&turned, 3000), (&bright, 6000)] {
+        let of_model = differing(&front, other, 160..480, 0..270);
+        assert!(of_model > least, "{of_model} pixels of the model are others");
+        assert_eq!(differing(&front, other, 340..440, 200..230), 0, "the window hides the model");
+    }
+    assert_eq!(differing(&front, &nothing, 0..140, 0..270), 0, "the panel is egui's alone");
+    assert_eq!(gpu.check(), Ok(()));
 }
 
 #[test]
