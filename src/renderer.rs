@@ -1,8 +1,9 @@
 //! The facade: scenes in, passes recorded.
 //!
 //! [`Renderer`] holds what lives as long as the device. It never prints, and frames it records into the
-//! caller's encoder; only uploads are submitted, and waited for, so that little is staged at a time.
+//! caller's encoder. It submits nothing and waits for nothing, unless it is told to with [`Uploads::Bounded`].
 
+mod error;
 mod frame_state;
 mod host;
 mod lifetime;
@@ -13,44 +14,25 @@ mod uniforms;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, is_worth_deferring, plan};
-use crate::gpu::Identity;
 use crate::gpu::formats::{self, Precision};
-use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError};
+use crate::gpu::{DeviceLost, Identity, LostFlag, Staging, Uploads};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels};
 use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundTarget, DeferredPipelines, DeferredTarget, DisplayPipelines,
     ForwardPipelines, ForwardTarget, draw,
 };
 use crate::scene::{Background, EnvironmentMaps, Scene, Topology, View};
 use crate::shader::types::FrameUniform;
-use crate::shader::{DisplayFeatures, ShaderError, ShaderSources};
+use crate::shader::{DisplayFeatures, ShaderSources};
 use std::sync::Arc;
 use uniforms::{background_uniform, display_uniform, frame_uniform};
 
+pub use error::RenderError;
 pub use frame_state::FrameState;
 pub use host::{HostTarget, HostView};
 pub use paint::Prepared;
 pub use pass_format::{Output, PassFormat};
 pub use target::{RadianceTarget, SurfaceTarget};
-
-/// Why a frame could not be recorded.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    #[error(transparent)]
-    Upload(#[from] UploadError),
-    #[error("a shader of this version is broken, please report it: {0}")]
-    Shader(#[from] ShaderError),
-    #[error("this frame cannot be shaded in a pass of its own; Renderer::path says which can")]
-    NotDeferrable,
-    #[error("{feature} needs a pass of its own: encode_radiance and encode_display have one")]
-    NeedsOwnPass { feature: &'static str },
-    #[error("no frame of this scene has been prepared")]
-    NotPrepared,
-    #[error("the pass cannot be drawn into: {0}")]
-    Pass(String),
-    #[error("the picture is {width} x {height} pixels; both must be between 1 and {allowed}")]
-    Size { width: u32, height: u32, allowed: u32 },
-}
 
 /// What a recorded frame consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -108,6 +90,8 @@ pub struct Renderer {
     display: DisplayPipelines,
     /// For hosts that have no depth buffer.
     own_depth: Option<wgpu::TextureView>,
+    uploads: Uploads,
+    lost: LostFlag,
     pub(crate) identity: Identity,
     /// `Off` draws the same pictures with more work.
     pub culling: Culling,
@@ -130,6 +114,8 @@ impl Renderer {
             background: BackgroundPipeline::new(device),
             display: DisplayPipelines::new(device),
             own_depth: None,
+            uploads: Uploads::default(),
+            lost: LostFlag::default(),
             identity: Identity::default(),
             culling: Culling::On,
         }
@@ -185,7 +171,7 @@ impl Renderer {
         levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        let uploaded = GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?;
+        let uploaded = GpuScene::new(self.staging(device, queue)?, scene, levels, maps, &table(&disney::TABLE))?;
         Ok(self.deferrable((device, queue), scene, uploaded))
     }
 
@@ -199,7 +185,8 @@ impl Renderer {
         (maps, same_light): (Option<&EnvironmentMaps>, bool),
         previous: GpuScene,
     ) -> Result<GpuScene, RenderError> {
-        let uploaded = previous.again(device, queue, scene, (maps, same_light), &table(&disney::TABLE))?;
+        let uploaded =
+            previous.again(self.staging(device, queue)?, scene, (maps, same_light), &table(&disney::TABLE))?;
         Ok(self.deferrable((device, queue), scene, uploaded))
     }
 
@@ -262,14 +249,15 @@ impl Renderer {
         target: &RadianceTarget<'_>,
         state: &mut FrameState,
     ) -> Result<FrameStats, RenderError> {
+        self.check_device()?;
         check_size(device, view)?;
         let forward_target = ForwardTarget::radiance(target.format, target.samples);
         let options = PlanOptions { samples: target.samples, culling: self.culling };
-        let visible = state.plan_frame((device, queue), scene, view, options);
+        let visible = state.plan_frame((device, queue), scene, view, options)?;
         let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
         let panorama = self.panorama((device, queue), scene, view, (forward_target, under), state)?;
         let uniform = frame_uniform(scene, view);
-        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
+        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
         // Without a panorama, an environment background is the black of a scene without light.
         let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
             1.0
@@ -314,9 +302,10 @@ impl Renderer {
         (view, visible): (&View, wgpu::Buffer),
         uniform: &FrameUniform,
         state: &mut FrameState,
-    ) -> wgpu::BindGroup {
+    ) -> Result<wgpu::BindGroup, DeviceLost> {
         let origin_in_world = scene.drawables.origin_in_world;
-        let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
+        let clusters = scene.lights.as_mut().map(|lights| lights.clusters(device, origin_in_world, view));
+        let clusters = clusters.transpose()?.flatten();
         state.frame.group(
             (device, queue),
             "frame",
@@ -336,7 +325,7 @@ impl Renderer {
         state: &mut FrameState,
     ) -> Result<Option<BackgroundPass>, RenderError> {
         let (Some(environment), true) = (&mut scene.environment, state.plan.panorama) else { return Ok(None) };
-        let panorama = environment.panorama(device, queue)?;
+        let panorama = environment.panorama(Staging::new(device, queue, self.uploads))?;
         let radiance_scale = environment.intensity * panorama.scale;
         let uniform = background_uniform(view, environment.environment_from_world, radiance_scale);
         let ForwardTarget { format, samples, depth, light } = target;
@@ -356,6 +345,7 @@ impl Renderer {
         (target, format): (&wgpu::TextureView, wgpu::TextureFormat),
         state: &mut FrameState,
     ) -> Result<(), RenderError> {
+        self.check_device()?;
         let features = DisplayFeatures { tone_map: view.tone_map, encode_srgb: !formats::encodes_srgb(format) };
         let uniform = display_uniform(view);
         let uniform = (&uniform, &mut state.display);

@@ -199,12 +199,13 @@ impl LiveScene {
     /// not submitted shows them too.
     ///
     /// # Errors
-    /// Where the scene does not fit on the device. The changes stay to be made.
+    /// [`RenderError::DeviceLost`], and where the scene does not fit on the device. The changes stay to be made.
     pub fn update(
         &mut self,
         renderer: &Renderer,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
     ) -> Result<&mut GpuScene, EmbedError> {
+        renderer.check_device()?;
         let mut previous = self.uploaded.take().filter(|uploaded| uploaded.renderer == renderer.identity);
         let is_written = match &mut previous {
             Some(uploaded) if !self.pending.all => self.write(queue, &mut uploaded.scene),

@@ -1,7 +1,7 @@
 //! An environment on the GPU: the prefiltered atlas, its uniform, and the panorama when it is seen.
 
 use super::UploadError;
-use crate::gpu::{Staging, formats};
+use crate::gpu::{Staging, filled_buffer, formats, write_buffer};
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile};
 use crate::shader::types::EnvironmentUniform;
 use glam::{DMat3, Vec3};
@@ -9,7 +9,6 @@ use half::f16;
 use half::slice::HalfFloatSliceExt;
 use rayon::prelude::*;
 use std::sync::Arc;
-use wgpu::util::DeviceExt;
 
 /// Radiance that half floats hold with room for a filter's rounding.
 const HALF_MAX: f32 = 65000.0;
@@ -37,7 +36,6 @@ pub struct Panorama {
 impl GpuEnvironment {
     /// With the textures of the `previous` one, if that was made of the same image and maps.
     pub(crate) fn new(
-        device: &wgpu::Device,
         staging: &mut Staging<'_>,
         environment: &Environment,
         maps: &EnvironmentMaps,
@@ -47,17 +45,14 @@ impl GpuEnvironment {
             Some(previous) => (previous.atlas, previous.atlas_scale, previous.panorama),
             None => {
                 let (width, height) = (maps.atlas_width, maps.atlas_height);
-                let (atlas, scale) = upload(device, staging, "environment atlas", width, height, &maps.texels)?;
+                let (atlas, scale) = upload(staging, "environment atlas", width, height, &maps.texels)?;
                 (atlas, scale, None)
             }
         };
         let sides = tile_sides(maps)?;
         let contents = uniform(environment, maps, scale, sides);
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("environment"),
-            contents: bytemuck::bytes_of(&contents),
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        });
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let uniform = filled_buffer(staging.device, "environment", bytemuck::bytes_of(&contents), usage)?;
         Ok(Self {
             atlas,
             atlas_scale: scale,
@@ -69,14 +64,17 @@ impl GpuEnvironment {
         })
     }
 
-    /// Turns and dims the environment as it is now. Returns false, and nothing has changed, where it is of another image.
+    /// Turns and dims the environment as it is now. Returns false, and nothing has changed, where it is of another image, and on a
+    /// lost device.
     pub(super) fn replace(&mut self, queue: &wgpu::Queue, environment: &Environment, maps: &EnvironmentMaps) -> bool {
         let size = self.atlas.texture().size();
         let is_same = Arc::ptr_eq(&self.image, &environment.image)
             && (size.width, size.height) == (maps.atlas_width, maps.atlas_height);
         let (true, Ok(sides)) = (is_same, tile_sides(maps)) else { return false };
         let contents = uniform(environment, maps, self.atlas_scale, sides);
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&contents));
+        if write_buffer(queue, &self.uniform, 0, bytemuck::bytes_of(&contents)).is_err() {
+            return false;
+        }
         self.environment_from_world = environment_from_world(environment);
         self.intensity = environment.intensity as f32;
         true
@@ -88,12 +86,12 @@ impl GpuEnvironment {
     }
 
     /// The panorama, uploaded when it is first seen.
-    pub(crate) fn panorama(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Panorama, UploadError> {
+    pub(crate) fn panorama(&mut self, mut staging: Staging<'_>) -> Result<Panorama, UploadError> {
         if let Some(panorama) = &self.panorama {
             return Ok(panorama.clone());
         }
         let EnvironmentImage { width, height, ref texels } = *self.image;
-        let (view, scale) = upload(device, &mut Staging::new(device, queue), "panorama", width, height, texels)?;
+        let (view, scale) = upload(&mut staging, "panorama", width, height, texels)?;
         let panorama = Panorama { view, scale };
         self.panorama = Some(panorama.clone());
         Ok(panorama)
@@ -152,21 +150,20 @@ pub(crate) fn columns(matrix: DMat3) -> [[f32; 4]; 3] {
 }
 
 fn upload(
-    device: &wgpu::Device,
     staging: &mut Staging<'_>,
     label: &str,
     width: u32,
     height: u32,
     texels: &[Vec3],
 ) -> Result<(wgpu::TextureView, f32), UploadError> {
-    let allowed = device.limits().max_texture_dimension_2d;
+    let allowed = staging.device.limits().max_texture_dimension_2d;
     if width.max(height) > allowed {
         return Err(UploadError::EnvironmentTooLarge { width, height, allowed });
     }
     let peak = texels.par_iter().map(|texel| texel.max_element()).reduce(|| 0.0, f32::max);
     let scale = (peak / HALF_MAX).max(1.0);
     let halves = halves(texels, scale);
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
+    let texture = staging.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,

@@ -95,18 +95,12 @@ impl TextureCache {
     }
 
     /// The image `index` of the scene in one role, uploaded at its first use.
-    pub(super) fn view(
-        &mut self,
-        device: &wgpu::Device,
-        staging: &mut Staging<'_>,
-        scene: &Scene,
-        key: TextureKey,
-    ) -> wgpu::TextureView {
+    pub(super) fn view(&mut self, staging: &mut Staging<'_>, scene: &Scene, key: TextureKey) -> wgpu::TextureView {
         if let Some(view) = self.views.get(&key) {
             return view.clone();
         }
         let image = &scene.images[key.image];
-        let max_side = device.limits().max_texture_dimension_2d;
+        let max_side = staging.device.limits().max_texture_dimension_2d;
         if image.width.max(image.height) > max_side {
             let (Image { width, height, .. }, TextureKey { image, .. }) = (image, key);
             let message = format!("image {image} is {width} x {height}; this device draws it at {max_side} at most");
@@ -114,7 +108,7 @@ impl TextureCache {
         }
         let levels = self.levels.levels.remove(&key);
         let levels = levels.unwrap_or_else(|| key.levels(scene, max_side));
-        let texture = upload(device, staging, image, key.role, levels);
+        let texture = upload(staging, image, key.role, levels);
         self.bytes += (0..texture.mip_level_count())
             .map(|level| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1)))
             .sum::<u64>()
@@ -154,20 +148,14 @@ fn descriptor(sampler: Sampler) -> wgpu::SamplerDescriptor<'static> {
 }
 
 /// Uploads the levels, each of which is let go when it is staged.
-fn upload(
-    device: &wgpu::Device,
-    staging: &mut Staging<'_>,
-    image: &Image,
-    role: Role,
-    levels: Vec<mips::Level>,
-) -> wgpu::Texture {
+fn upload(staging: &mut Staging<'_>, image: &Image, role: Role, levels: Vec<mips::Level>) -> wgpu::Texture {
     let format = match image.pixels {
         Pixels::Rgba16(_) => formats::DEEP_TEXTURE,
         Pixels::Rgba8(_) if role == Role::Normal => formats::NORMAL_TEXTURE,
         Pixels::Rgba8(_) if role.is_srgb() => formats::COLOR_TEXTURE,
         Pixels::Rgba8(_) => formats::DATA_TEXTURE,
     };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
+    let texture = staging.device.create_texture(&wgpu::TextureDescriptor {
         label: image.name.as_deref(),
         size: wgpu::Extent3d { width: levels[0].width, height: levels[0].height, depth_or_array_layers: 1 },
         mip_level_count: levels.len() as u32,

@@ -2,7 +2,7 @@
 
 use crate::gpu::KeptUniform;
 use crate::gpu::bindings::background_layout;
-use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, PassError, fullscreen_pipeline};
 use crate::gpu_scene::{Panorama, entry};
 use crate::shader::types::BackgroundUniform;
 use crate::shader::{Composed, ShaderError, ShaderSources, TargetLight, background_module_into, create_module};
@@ -61,7 +61,7 @@ impl BackgroundPipeline {
         target: BackgroundTarget,
         panorama: &Panorama,
         (uniform, kept): (&BackgroundUniform, &mut KeptUniform<wgpu::TextureView>),
-    ) -> Result<BackgroundPass, ShaderError> {
+    ) -> Result<BackgroundPass, PassError> {
         let pipeline = self.pipeline(device, sources, target)?;
         let bind = |uniform: &wgpu::Buffer, view: &wgpu::TextureView| {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -75,7 +75,7 @@ impl BackgroundPipeline {
             })
         };
         let contents = bytemuck::bytes_of(uniform);
-        let group = kept.group((device, queue), "background", contents, panorama.view.clone(), bind);
+        let group = kept.group((device, queue), "background", contents, panorama.view.clone(), bind)?;
         let instances = match (target.under, target.depth.reversed) {
             (true, _) => 0..2,
             (false, true) => 0..1,

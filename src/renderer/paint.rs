@@ -48,15 +48,16 @@ impl Renderer {
         state: &'a mut FrameState,
     ) -> Result<Prepared<'a>, RenderError> {
         let mut pipelines = state.painting.take().map(|painting| painting.pipelines).unwrap_or_default();
+        self.check_device()?;
         check_size(device, view)?;
         let target = pass.forward_target(device, view)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
-        let visible = state.plan_frame((device, queue), scene, view, options);
+        let visible = state.plan_frame((device, queue), scene, view, options)?;
         let panorama = self.panorama((device, queue), scene, view, (target, false), state)?;
         let mut uniform = frame_uniform(scene, view);
         let own = clip_from_origin(view, scene.drawables.origin_in_world);
         uniform.clip_from_world = pass.clip(&view.camera, own).to_cols_array_2d();
-        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state);
+        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
         self.forward.prepare(device, &self.sources, scene, &state.plan, target)?;
         pipelines.clear();
         pipelines.extend(self.forward.of_plan(&state.plan, target));

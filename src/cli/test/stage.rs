@@ -9,7 +9,7 @@ use crate::cli::environment::{CacheArgs, bake_maps};
 use crate::cli::error::CliError;
 use crate::cli::stats::Stopwatch;
 use crate::cli::subject::SubjectArgs;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::GpuScene;
 use crate::import::model_files;
 use crate::progress::Progress;
@@ -70,7 +70,7 @@ struct Subject {
 
 impl<'a> Stage<'a> {
     pub(super) fn new(gpu: &'a Gpu, cache: &'a CacheArgs, progress: &'a dyn Progress) -> Self {
-        let renderer = Renderer::new(&gpu.device, &gpu.queue);
+        let renderer = Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded);
         Self { gpu, cache, progress, renderer, subject: None, maps: Vec::new(), target: None, hashes: HashMap::new() }
     }
 

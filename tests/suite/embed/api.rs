@@ -3,11 +3,13 @@
 use std::path::Path;
 
 const LIST: &str = "tests/goldens/embedding-api.txt";
-const FILES: [&str; 8] = [
+const FILES: [&str; 10] = [
     "src/embed/mod.rs",
     "src/embed/requirements.rs",
     "src/embed/scene.rs",
+    "src/gpu/lost.rs",
     "src/renderer.rs",
+    "src/renderer/error.rs",
     "src/renderer/host.rs",
     "src/renderer/lifetime.rs",
     "src/renderer/paint.rs",

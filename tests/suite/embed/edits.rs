@@ -61,7 +61,7 @@ impl Stage {
     }
 
     /// Draws what the scene is now as one that was never anything else.
-    fn draw_anew(&mut self, scene: &LiveScene) -> Vec<u8> {
+    pub(super) fn draw_anew(&mut self, scene: &LiveScene) -> Vec<u8> {
         let mut anew = LiveScene::new();
         anew.insert(scene.scene()).unwrap();
         anew.set_environment(scene.scene().environment.clone().map(with_maps));

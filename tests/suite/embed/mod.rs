@@ -6,8 +6,10 @@ mod examples;
 #[path = "../../../examples/host/mod.rs"]
 mod host;
 mod lifetime;
+mod lost;
 mod mixing;
 mod passes;
+mod quiet;
 
 use crate::support::{add_light, front_view, sphere_scene};
 use glam::{DVec3, UVec2, Vec3, Vec4};
