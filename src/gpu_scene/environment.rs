@@ -4,10 +4,10 @@ use super::UploadError;
 use crate::gpu::{Staging, filled_buffer, formats, write_buffer};
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile};
 use crate::shader::types::EnvironmentUniform;
+use crate::threads::*;
 use glam::{DMat3, Vec3};
 use half::f16;
 use half::slice::HalfFloatSliceExt;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Radiance that half floats hold with room for a filter's rounding.
@@ -160,7 +160,7 @@ fn upload(
     if width.max(height) > allowed {
         return Err(UploadError::EnvironmentTooLarge { width, height, allowed });
     }
-    let peak = texels.par_iter().map(|texel| texel.max_element()).reduce(|| 0.0, f32::max);
+    let peak = texels.par_iter().map(|texel| texel.max_element()).max_by(f32::total_cmp).unwrap_or(0.0);
     let scale = (peak / HALF_MAX).max(1.0);
     let halves = halves(texels, scale);
     let texture = staging.device.create_texture(&wgpu::TextureDescriptor {

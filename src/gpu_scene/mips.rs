@@ -8,9 +8,9 @@ mod average;
 mod texels;
 
 use crate::scene::{Image, Pixels};
+use crate::threads::*;
 use average::{Bands, halve};
 use glam::Vec4;
-use rayon::prelude::*;
 use std::sync::Arc;
 use texels::{Encoder, Linear, Linear8, Linear16, signed};
 

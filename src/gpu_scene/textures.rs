@@ -6,7 +6,7 @@ use crate::frame::Drawables;
 use crate::gpu::{Staging, formats};
 use crate::scene::{AlphaMode, Image, Material, Pixels, Sampler, Scene, Texture, TextureSlot, Wrap};
 use crate::shader::{MaterialFeatures, SceneFeatures};
-use rayon::prelude::*;
+use crate::threads::*;
 use std::collections::{BTreeSet, HashMap};
 
 /// What tells a texture from others.

@@ -1,6 +1,7 @@
 //! Frames in other people's passes.
 
 mod api;
+mod crates;
 mod edits;
 mod examples;
 #[path = "../../../examples/host/mod.rs"]
