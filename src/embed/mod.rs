@@ -2,11 +2,14 @@
 //! again.
 
 mod check;
+mod environment;
+mod hosted;
 mod merge;
 mod requirements;
 mod scene;
 mod slots;
 
+pub use environment::EnvironmentDownload;
 pub use requirements::{Degraded, Requirements};
 pub use scene::LiveScene;
 

@@ -1,8 +1,8 @@
 //! Material uniforms and bind groups: one a material and set of features, with only what those features read.
 
-use super::entry;
 use super::tables::Table;
 use super::textures::{TextureCache, textures_of};
+use super::{UploadError, entry};
 use crate::frame::Drawables;
 use crate::gpu::bindings::material_layout;
 use crate::gpu::{DeviceLost, Staging, filled_buffer, write_buffer};
@@ -48,7 +48,7 @@ pub(crate) fn upload(
     drawables: &Drawables,
     cache: &mut TextureCache,
     disney_table: &Table,
-) -> Result<Materials, DeviceLost> {
+) -> Result<Materials, UploadError> {
     let (device, queue) = (staging.device, staging.queue);
     let mut materials = Materials::default();
     let mut bound: HashMap<(usize, MaterialFeatures), GpuMaterial> = HashMap::new();
@@ -73,7 +73,7 @@ fn bind(
     (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
     (index, features): (usize, MaterialFeatures),
-) -> Result<GpuMaterial, DeviceLost> {
+) -> Result<GpuMaterial, UploadError> {
     let (device, material) = (staging.device, &scene.materials[index]);
     let name = material.name.as_deref().unwrap_or("material");
     let uniform = uniform_buffer(device, name, bytemuck::bytes_of(&uniform(material)))?;
@@ -83,7 +83,7 @@ fn bind(
         .map(|sampler| cache.sampler(device, sampler))
         .collect();
     let textures = textures_of(scene, material, &features).into_iter();
-    let views: Vec<wgpu::TextureView> = textures.map(|key| cache.view(staging, scene, key)).collect();
+    let views = textures.map(|key| cache.view(staging, scene, key)).collect::<Result<Vec<_>, _>>()?;
     let mut entries = vec![entry(MATERIAL_UNIFORM_BINDING, uniform.as_entire_binding())];
     for (index, sampler) in samplers.iter().enumerate() {
         let binding = MATERIAL_SAMPLER_BINDING + index as u32;

@@ -28,7 +28,7 @@ use materials::GpuMaterial;
 pub use pulled::PulledGeometry;
 pub use tables::Table;
 use textures::TextureCache;
-pub use textures::TextureLevels;
+pub use textures::{HostTextures, TextureLevels};
 
 /// Why a scene cannot be put on this device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -41,6 +41,10 @@ pub enum UploadError {
     EnvironmentLayout,
     #[error("the scene has an environment, but no maps baked from it were given")]
     MissingMaps,
+    #[error("image {image} is a host's texture that was not given for this device")]
+    NoHostTexture { image: usize },
+    #[error("image {image} is a host's texture and read as {what}, which is not possible")]
+    HostTexture { image: usize, what: &'static str },
     #[error(transparent)]
     DeviceLost(#[from] DeviceLost),
 }
@@ -182,6 +186,11 @@ impl GpuScene {
             identity: Identity::default(),
             revision: 0,
         })
+    }
+
+    /// Replaces the host's textures, for the next upload with the textures of this one.
+    pub fn set_host_textures(&mut self, of_host: HostTextures) {
+        self.textures.of_host = of_host;
     }
 
     /// Uploads the geometry of `scene`, of which this was made, once more, so that surfaces can be shaded in a pass of

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 const LIST: &str = "tests/goldens/embedding-api.txt";
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
+    "src/embed/environment.rs",
     "src/embed/mod.rs",
     "src/embed/requirements.rs",
     "src/embed/scene.rs",

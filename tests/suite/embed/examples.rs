@@ -10,6 +10,8 @@ use specula::scene::Scene;
 mod embed_egui;
 #[path = "../../../examples/embed_encode.rs"]
 mod embed_encode;
+#[path = "../../../examples/embed_texture.rs"]
+mod embed_texture;
 #[path = "../../../examples/minimal.rs"]
 mod minimal;
 #[path = "../../../examples/offscreen_server.rs"]
@@ -78,6 +80,25 @@ fn egui_lays_a_model_out_among_its_widgets() {
     }
     assert_eq!(differing(&front, &nothing, 0..140, 0..270), 0, "the panel is egui's alone");
     assert_eq!(gpu.check(), Ok(()));
+}
+
+#[test]
+fn what_a_host_draws_is_on_a_screen_of_ours() {
+    let gpu = gpu(Precision::Half);
+    let mut room = embed_texture::Room::new(&gpu).unwrap();
+    let pictures = [0.0, 0.8, 0.0].map(|angle| room.picture(&gpu, angle).unwrap());
+    assert!(pictures[0] == pictures[2]);
+    assert_eq!(room.scene.uploads(), 1);
+    let size = embed_texture::SIZE_PX;
+    let all = || (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
+    let changed = |at: &UVec2| texel(&pictures[0], size.x, *at) != texel(&pictures[1], size.x, *at);
+    let changed: Vec<UVec2> = all().filter(changed).collect();
+    // The screen's part of the picture; its light is none of the room's.
+    let is_on_screen = |at: &UVec2| (125..345).contains(&at.x) && (70..200).contains(&at.y);
+    assert!(changed.len() > 1000 && changed.iter().all(is_on_screen), "{} pixels", changed.len());
+    // The host's sky: blue above, dark below.
+    let [above, below] = [UVec2::new(240, 4), UVec2::new(240, 265)].map(|at| texel(&pictures[0], size.x, at));
+    assert!(above[2] > above[0] && above[2] > below[2] + 40, "{above:?}, {below:?}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod edits;
 mod examples;
 #[path = "../../../examples/host/mod.rs"]
 mod host;
+mod hosted;
 mod lifetime;
 mod lost;
 mod mixing;
