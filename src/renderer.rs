@@ -9,6 +9,7 @@ mod host;
 mod lifetime;
 mod paint;
 mod pass_format;
+mod pick;
 mod target;
 mod uniforms;
 
@@ -32,6 +33,7 @@ pub use frame_state::FrameState;
 pub use host::{HostTarget, HostView};
 pub use paint::Prepared;
 pub use pass_format::{Output, PassFormat};
+pub use pick::{Pick, PickedSurface};
 pub use target::{RadianceTarget, SurfaceTarget};
 
 /// What a recorded frame consists of.

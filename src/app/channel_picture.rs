@@ -27,7 +27,7 @@ enum Scale {
 fn scale(channel: Channel) -> Scale {
     match channel {
         Channel::Radiance { .. } => Scale::Radiance,
-        Channel::LightCount => Scale::Range,
+        Channel::LightCount | Channel::Digits(_) => Scale::Range,
         Channel::Nan => Scale::Number,
         Channel::Input(input) => match input {
             Input::BaseColor | Input::F0 => Scale::Color,

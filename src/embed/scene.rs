@@ -319,6 +319,12 @@ impl LiveScene {
         Ok(())
     }
 
+    /// All models with their places in the scene.
+    pub(super) fn models(&self) -> impl Iterator<Item = (ModelId, Model)> {
+        let scene = self.id;
+        self.models.iter().map(move |((index, generation), model)| (ModelId { scene, index, generation }, *model))
+    }
+
     fn model(&self, id: ModelId) -> Result<&Model, EmbedError> {
         let model = self.models.get((id.index, id.generation)).filter(|_| id.scene == self.id);
         model.ok_or(EmbedError::StaleHandle)

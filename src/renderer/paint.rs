@@ -7,7 +7,7 @@ use crate::gpu::Identity;
 use crate::gpu_scene::GpuScene;
 use crate::passes::{BackgroundPass, draw};
 use crate::scene::View;
-use glam::UVec2;
+use glam::{UVec2, Vec2};
 
 /// What a frame binds, kept in the [`FrameState`] from its preparation to the pass.
 #[derive(Debug)]
@@ -16,7 +16,7 @@ pub(super) struct Painting {
     frame_group: wgpu::BindGroup,
     pipelines: Vec<Option<wgpu::RenderPipeline>>,
     panorama: Option<BackgroundPass>,
-    at_px: UVec2,
+    at_px: Vec2,
     size_px: UVec2,
 }
 
@@ -44,6 +44,18 @@ impl Renderer {
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         scene: &'a mut GpuScene,
         (view, at_px): (&View, UVec2),
+        pass: &PassFormat,
+        state: &'a mut FrameState,
+    ) -> Result<Prepared<'a>, RenderError> {
+        self.prepare_at((device, queue), scene, (view, at_px.as_vec2()), pass, state)
+    }
+
+    /// The same anywhere, even beside the attachments.
+    pub(super) fn prepare_at<'a>(
+        &mut self,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        scene: &'a mut GpuScene,
+        (view, at_px): (&View, Vec2),
         pass: &PassFormat,
         state: &'a mut FrameState,
     ) -> Result<Prepared<'a>, RenderError> {
@@ -82,7 +94,7 @@ impl Prepared<'_> {
     /// another viewport, other bind groups, buffers and pipelines; its scissor rectangle is respected.
     pub fn paint(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Painting { frame_group, pipelines, panorama, at_px, size_px, .. } = self.painting;
-        let (at, size) = (at_px.as_vec2(), size_px.as_vec2());
+        let (at, size) = (at_px, size_px.as_vec2());
         pass.set_viewport(at.x, at.y, size.x, size.y, 0.0, 1.0);
         draw(pass, pipelines, self.scene, frame_group, &self.state.plan.opaque);
         if let Some(panorama) = panorama {

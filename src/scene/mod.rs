@@ -20,7 +20,7 @@ mod spot_cone;
 mod view;
 
 pub use camera::{Camera, Projection};
-pub use channel::{Channel, Component, Components, Input, LightSource};
+pub use channel::{Channel, Component, Components, Input, LightSource, Number, from_digits};
 pub use disney::Disney;
 pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile, Sun};
 pub use image::{Encoding, Image, Picture, Pixels, RadianceImage, Sampler, Texture, Wrap};

@@ -3,9 +3,10 @@
 use std::path::Path;
 
 const LIST: &str = "tests/goldens/embedding-api.txt";
-const FILES: [&str; 11] = [
+const FILES: [&str; 13] = [
     "src/embed/environment.rs",
     "src/embed/mod.rs",
+    "src/embed/pick.rs",
     "src/embed/requirements.rs",
     "src/embed/scene.rs",
     "src/gpu/lost.rs",
@@ -15,6 +16,7 @@ const FILES: [&str; 11] = [
     "src/renderer/lifetime.rs",
     "src/renderer/paint.rs",
     "src/renderer/pass_format.rs",
+    "src/renderer/pick.rs",
 ];
 
 /// Every public declaration of a file, without bodies and comments, one a line.

@@ -11,6 +11,7 @@ mod lifetime;
 mod lost;
 mod mixing;
 mod passes;
+mod picking;
 mod quiet;
 
 use crate::support::{add_light, front_view, sphere_scene};
