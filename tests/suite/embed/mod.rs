@@ -1,6 +1,7 @@
 //! Frames in other people's passes.
 
 mod api;
+mod counts;
 mod crates;
 mod edits;
 mod examples;
@@ -78,7 +79,11 @@ fn view() -> View {
 }
 
 fn encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
-    gpu.device.create_command_encoder(&Default::default())
+    encoder_of(&gpu.device)
+}
+
+fn encoder_of(device: &wgpu::Device) -> wgpu::CommandEncoder {
+    device.create_command_encoder(&Default::default())
 }
 
 /// How many texels of two pictures differ by more than `by` in any byte.
