@@ -7,7 +7,7 @@ use super::{EmbedError, ModelId, check};
 use crate::gpu::Identity;
 use crate::gpu_scene::{GpuScene, TextureLevels};
 use crate::renderer::{RenderError, Renderer};
-use crate::scene::{Environment, EnvironmentMaps, Light, Material, Pixels, Scene};
+use crate::scene::{Environment, EnvironmentMaps, Light, Material, Pixels, Placed, Scene};
 use glam::DMat4;
 use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
@@ -28,6 +28,8 @@ pub struct LiveScene {
     models: Slots<Model>,
     hosted: Hosted,
     uploaded: Option<Uploaded>,
+    /// As of the last change of a place or a light.
+    placed: Placed,
     pending: Pending,
     uploads: u64,
 }
@@ -64,6 +66,7 @@ impl Default for LiveScene {
             models: Slots::new(),
             hosted: Hosted::default(),
             uploaded: None,
+            placed: Placed::default(),
             pending: Pending::default(),
             uploads: 0,
         }
@@ -289,11 +292,14 @@ impl LiveScene {
             self.scene.materials[index] = new;
             self.pending.all |= !fits;
         }
-        if self.pending.all || (moved && !uploaded.move_instances(queue, &self.scene.instances())) {
+        if moved || lights {
+            self.placed.place(&self.scene);
+        }
+        if self.pending.all || (moved && !uploaded.move_instances(queue, self.placed.instances())) {
             return false;
         }
         let has_lights = !self.scene.lights.is_empty();
-        if (lights || (moved && has_lights)) && !uploaded.set_lights(queue, &self.scene) {
+        if (lights || (moved && has_lights)) && !uploaded.set_lights(queue, &self.scene, self.placed.lights()) {
             return false;
         }
         let Some(maps) = &self.maps else { return true };

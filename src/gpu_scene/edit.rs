@@ -2,7 +2,7 @@
 
 use super::{GpuScene, gpu_instance};
 use crate::gpu::write_buffer;
-use crate::scene::{EnvironmentMaps, Instance, Material, Scene, TextureSlot};
+use crate::scene::{EnvironmentMaps, Instance, LightInWorld, Material, Scene, TextureSlot};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
 
 /// Each change is written when the queue is submitted to next, and so seen by all frames that are submitted then. Each
@@ -16,10 +16,10 @@ impl GpuScene {
             return true;
         }
         let placed = &self.drawables.instances[range.clone()];
-        let data: Vec<types::Instance> =
-            placed.iter().map(|placed| gpu_instance(placed, self.drawables.origin_in_world)).collect();
+        self.moved.clear();
+        self.moved.extend(placed.iter().map(|placed| gpu_instance(placed, self.drawables.origin_in_world)));
         let offset = range.start * size_of::<types::Instance>();
-        if write_buffer(queue, &self.instances, offset as u64, bytemuck::cast_slice(&data)).is_err() {
+        if write_buffer(queue, &self.instances, offset as u64, bytemuck::cast_slice(&self.moved)).is_err() {
             return false;
         }
         // It has the place of its instance within.
@@ -48,15 +48,12 @@ impl GpuScene {
         false
     }
 
-    /// Takes the lights of `scene`, of which this was made, as they are now.
-    pub fn set_lights(&mut self, queue: &wgpu::Queue, scene: &Scene) -> bool {
-        let features = SceneFeatures { suns: self.features.suns, ..SceneFeatures::of(scene) };
+    /// Takes the lights of `scene`, of which this was made, as they are now, and in the world.
+    pub fn set_lights(&mut self, queue: &wgpu::Queue, scene: &Scene, lights_in_world: &[LightInWorld]) -> bool {
+        let features = SceneFeatures { suns: self.features.suns, ..SceneFeatures::lit_by(scene, lights_in_world) };
         let origin_in_world = self.drawables.origin_in_world;
         let replaced = features == self.features
-            && self
-                .lights
-                .as_mut()
-                .is_none_or(|lights| lights.replace(queue, &scene.lights_in_world(), origin_in_world));
+            && self.lights.as_mut().is_none_or(|lights| lights.replace(queue, lights_in_world, origin_in_world));
         if replaced {
             self.was_edited();
         }

@@ -11,6 +11,8 @@ use glam::{DVec3, UVec2};
 #[derive(Debug)]
 pub(crate) struct GpuLights {
     pub(super) buffer: wgpu::Buffer,
+    /// As they were when they were written.
+    lights: Vec<LightInWorld>,
     sorted: Sorted,
     list: LightList,
     last: Option<GpuClusters>,
@@ -79,18 +81,23 @@ impl GpuLights {
         };
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         let buffer = filled_buffer(device, "lights", bytemuck::cast_slice(&data), usage)?;
-        Ok(Self { buffer, sorted, list, last: None })
+        Ok(Self { buffer, lights: lights.to_vec(), sorted, list, last: None })
     }
 
     /// Replaces the lights by others that are found in the same way. Returns false, and nothing has changed, where they need
     /// more room or less, and on a lost device.
     pub(super) fn replace(&mut self, queue: &wgpu::Queue, lights: &[LightInWorld], origin_in_world: DVec3) -> bool {
+        if self.lights == lights {
+            return true;
+        }
         let (sorted, data) = Sorted::new(lights, origin_in_world, self.list);
         let fits = size_of_val(&data[..]) as u64 == self.buffer.size();
         if !fits || write_buffer(queue, &self.buffer, 0, bytemuck::cast_slice(&data)).is_err() {
             return false;
         }
         (self.sorted, self.last) = (sorted, None);
+        self.lights.clear();
+        self.lights.extend_from_slice(lights);
         true
     }
 

@@ -89,6 +89,8 @@ pub struct GpuScene {
     pub(crate) lights: Option<GpuLights>,
     pub(crate) environment: Option<GpuEnvironment>,
     textures: TextureCache,
+    /// Instances on their way to the device.
+    moved: Vec<types::Instance>,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
     pub(crate) identity: Identity,
     /// Counts the edits since the upload.
@@ -173,6 +175,7 @@ impl GpuScene {
             },
             warnings: textures.warnings.clone(),
             textures,
+            moved: Vec::new(),
             instances: storage("instances", bytemuck::cast_slice(&instance_data))?,
             lights,
             draws: geometry.primitives.into_iter().zip(materials.groups).map(GpuDraw::new).collect(),

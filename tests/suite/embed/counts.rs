@@ -52,7 +52,8 @@ fn a_thousand_scenes_leave_nothing() {
     let mut renderer = Renderer::new(&device, &queue);
     let sky = white_environment();
     let maps = Arc::new(bake(&sky.image, &Default::default(), &Silent));
-    let mut baseline = Vec::new();
+    let allocated = || device.generate_allocator_report().map_or(0, |report| report.total_allocated_bytes);
+    let (mut baseline, mut bytes) = (Vec::new(), 0);
     let mut drawn = 0;
     for round in 0..1000_u32 {
         let mut scene = LiveScene::new();
@@ -82,11 +83,12 @@ fn a_thousand_scenes_leave_nothing() {
         drop((scene, state));
         if round % 100 == 99 {
             device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-            let bytes = device.generate_allocator_report().map(|report| report.total_allocated_bytes);
-            println!("after {}: {bytes:?} bytes, {:?}", round + 1, alive(&instance));
+            println!("after {}: {} bytes, {:?}", round + 1, allocated(), alive(&instance));
             if round == 99 {
-                baseline = alive(&instance);
+                (baseline, bytes) = (alive(&instance), allocated());
             }
+            // A buffer left by every scene would be 100 times 16 bytes at least.
+            assert!(allocated() < bytes + 1600, "{} bytes after {bytes}", allocated());
             assert_eq!(alive(&instance), baseline, "after {} scenes", round + 1);
         }
     }

@@ -4,6 +4,8 @@ mod api;
 mod counts;
 mod crates;
 mod edits;
+#[path = "../../../examples/embed_cost.rs"]
+mod embed_cost;
 mod examples;
 #[path = "../../../examples/host/mod.rs"]
 mod host;
@@ -14,6 +16,7 @@ mod mixing;
 mod passes;
 mod picking;
 mod quiet;
+mod steady;
 
 use crate::support::{add_light, front_view, sphere_scene};
 use glam::{DVec3, UVec2, Vec3, Vec4};
