@@ -12,5 +12,7 @@ else
 fi
 cargo fmt --check
 cargo clippy --workspace --all-targets -- -D warnings
+# The library as an engine has it.
+cargo clippy --no-default-features --lib -- -D warnings
 cargo test --workspace
 RUSTDOCFLAGS=-Dwarnings cargo doc --workspace --no-deps

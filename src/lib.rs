@@ -28,6 +28,7 @@ pub mod reference;
 pub mod renderer;
 pub mod scene;
 pub mod shader;
+mod threads;
 
 pub use {glam, wgpu};
 

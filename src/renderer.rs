@@ -1,63 +1,43 @@
 //! The facade: scenes in, passes recorded.
 //!
 //! [`Renderer`] holds what lives as long as the device. It never prints, and frames it records into the
-//! caller's encoder; only uploads are submitted, and waited for, so that little is staged at a time.
+//! caller's encoder. It submits nothing and waits for nothing, unless it is told to with [`Uploads::Bounded`].
 
 mod channel;
 mod draws;
+mod error;
 mod frame_state;
 mod host;
 mod lifetime;
 mod paint;
 mod pass_format;
+mod pick;
 mod target;
 mod uniforms;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, is_worth_deferring, plan};
-use crate::gpu::Identity;
 use crate::gpu::formats::{self, Precision};
-use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, UploadError, WhiteFurnace};
+use crate::gpu::{Identity, LostFlag, Staging, Uploads};
+use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, WhiteFurnace};
 use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget, DeferredPipelines, DeferredTarget,
     DisplayPipelines, ForwardPipelines, ForwardTarget,
 };
 use crate::scene::{Background, Channel, EnvironmentMaps, Scene, Topology, View};
 use crate::shader::types::FrameUniform;
-use crate::shader::{Backdrop, DisplayFeatures, ShaderError, ShaderSources};
+use crate::shader::{Backdrop, DisplayFeatures, ShaderSources};
 use draws::{PlanPipelines, draw_plan};
 use std::sync::Arc;
 use uniforms::{background_uniform, display_uniform, frame_uniform};
 
+pub use error::RenderError;
 pub use frame_state::FrameState;
 pub use host::{HostTarget, HostView};
 pub use paint::Prepared;
 pub use pass_format::{Output, PassFormat};
+pub use pick::{Pick, PickedSurface};
 pub use target::{RadianceTarget, SurfaceTarget};
-
-/// Why a frame could not be recorded.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RenderError {
-    #[error(transparent)]
-    Upload(#[from] UploadError),
-    #[error("a shader of this version is broken, please report it: {0}")]
-    Shader(#[from] ShaderError),
-    #[error("this frame cannot be shaded in a pass of its own; Renderer::path says which can")]
-    NotDeferrable,
-    #[error("{feature} needs a pass of its own: encode_radiance and encode_display have one")]
-    NeedsOwnPass { feature: &'static str },
-    #[error("the furnace shows what surfaces return of an environment's light; give the scene one, whichever it is")]
-    NoFurnace,
-    #[error("this device cannot draw {what}: it lacks {feature}")]
-    Device { what: &'static str, feature: &'static str },
-    #[error("no frame of this scene has been prepared")]
-    NotPrepared,
-    #[error("the pass cannot be drawn into: {0}")]
-    Pass(String),
-    #[error("the picture is {width} x {height} pixels; both must be between 1 and {allowed}")]
-    Size { width: u32, height: u32, allowed: u32 },
-}
 
 /// What a recorded frame consists of.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -117,6 +97,8 @@ pub struct Renderer {
     own_depth: Option<wgpu::TextureView>,
     /// Of the channel that shows it, once that was asked for.
     furnace: Option<WhiteFurnace>,
+    uploads: Uploads,
+    lost: LostFlag,
     pub(crate) identity: Identity,
     /// `Off` draws the same pictures with more work.
     pub culling: Culling,
@@ -140,6 +122,8 @@ impl Renderer {
             display: DisplayPipelines::new(device),
             own_depth: None,
             furnace: None,
+            uploads: Uploads::default(),
+            lost: LostFlag::default(),
             identity: Identity::default(),
             culling: Culling::On,
         }
@@ -195,7 +179,7 @@ impl Renderer {
         levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
     ) -> Result<GpuScene, RenderError> {
-        let uploaded = GpuScene::new(device, queue, scene, levels, maps, &table(&disney::TABLE))?;
+        let uploaded = GpuScene::new(self.staging(device, queue)?, scene, levels, maps, &table(&disney::TABLE))?;
         Ok(self.deferrable((device, queue), scene, uploaded))
     }
 
@@ -209,7 +193,8 @@ impl Renderer {
         (maps, same_light): (Option<&EnvironmentMaps>, bool),
         previous: GpuScene,
     ) -> Result<GpuScene, RenderError> {
-        let uploaded = previous.again(device, queue, scene, (maps, same_light), &table(&disney::TABLE))?;
+        let uploaded =
+            previous.again(self.staging(device, queue)?, scene, (maps, same_light), &table(&disney::TABLE))?;
         Ok(self.deferrable((device, queue), scene, uploaded))
     }
 
@@ -272,11 +257,12 @@ impl Renderer {
         target: &RadianceTarget<'_>,
         state: &mut FrameState,
     ) -> Result<FrameStats, RenderError> {
+        self.check_device()?;
         check_size(device, view)?;
         let forward_target = ForwardTarget::radiance(target.format, target.samples);
         self.check_channel(device, scene, view, target.format)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
-        let visible = state.plan_frame((device, queue), scene, view, options);
+        let visible = state.plan_frame((device, queue), scene, view, options)?;
         let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
         let panorama = self.panorama((device, queue), scene, view, (forward_target, under), state)?;
         let uniform = frame_uniform(scene, view);
@@ -325,11 +311,14 @@ impl Renderer {
     ) -> Result<wgpu::BindGroup, RenderError> {
         let furnace = match (&mut self.furnace, view.channel) {
             (Some(furnace), Some(Channel::Furnace)) => Some(&*furnace),
-            (none, Some(Channel::Furnace)) => Some(&*none.insert(WhiteFurnace::new(device, queue)?)),
+            (none, Some(Channel::Furnace)) => {
+                Some(&*none.insert(WhiteFurnace::new(Staging::new(device, queue, self.uploads))?))
+            }
             _ => None,
         };
         let origin_in_world = scene.drawables.origin_in_world;
-        let clusters = scene.lights.as_mut().and_then(|lights| lights.clusters(device, origin_in_world, view));
+        let clusters = scene.lights.as_mut().map(|lights| lights.clusters(device, origin_in_world, view));
+        let clusters = clusters.transpose()?.flatten();
         let table = clusters.as_ref().map(|clusters| clusters.table.clone());
         Ok(state.frame.group(
             (device, queue),
@@ -339,7 +328,7 @@ impl Renderer {
             |frame, (_, visible, ..)| {
                 scene.frame_group(device, &self.shared, (frame, visible), clusters.as_ref(), furnace)
             },
-        ))
+        )?)
     }
 
     /// The panorama of the frame, where it has one.
@@ -358,7 +347,7 @@ impl Renderer {
             let source = BackgroundSource::Environment(uniform, atlas, self.shared.clamp_sampler.clone());
             (source, Backdrop::Blurred, 1.0)
         } else {
-            let panorama = environment.panorama(device, queue)?;
+            let panorama = environment.panorama(Staging::new(device, queue, self.uploads))?;
             (BackgroundSource::Panorama(panorama.view), Backdrop::Sharp, panorama.scale)
         };
         let uniform = background_uniform(view, from_world, environment.intensity * scale);
@@ -379,6 +368,7 @@ impl Renderer {
         (target, format): (&wgpu::TextureView, wgpu::TextureFormat),
         state: &mut FrameState,
     ) -> Result<(), RenderError> {
+        self.check_device()?;
         let features = DisplayFeatures { tone_map: view.tone_map, encode_srgb: !formats::encodes_srgb(format) };
         let uniform = display_uniform(view);
         let uniform = (&uniform, &mut state.display);

@@ -37,7 +37,7 @@ const SHARE_MAX: f32 = 1.004;
 fn scale(channel: Channel) -> Scale {
     match channel {
         Channel::Radiance { .. } => Scale::Radiance,
-        Channel::LightCount => Scale::Range,
+        Channel::LightCount | Channel::Digits(_) => Scale::Range,
         Channel::Nan | Channel::UvChecker | Channel::Wireframe => Scale::Number,
         Channel::Furnace => Scale::Share,
         Channel::Overdraw => Scale::Layers,

@@ -5,7 +5,7 @@ use super::edit::MaterialEdit;
 use super::shown::Shown;
 use super::state::ViewerState;
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, capture_pixel, redraw, submit};
-use crate::gpu::{Gpu, formats};
+use crate::gpu::{Gpu, Uploads, formats};
 use crate::gpu_scene::{GpuScene, TextureLevels};
 use crate::renderer::{FrameStats, PathChoice, Renderer};
 use crate::scene::{EnvironmentMaps, RadianceImage, View};
@@ -68,7 +68,7 @@ impl Stage {
     pub(super) fn new(gpu: Gpu) -> Self {
         let paths = PathChoice::for_device(gpu.info.device_type);
         Self {
-            renderer: Renderer::new(&gpu.device, &gpu.queue).with_paths(paths),
+            renderer: Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded).with_paths(paths),
             gpu,
             uploaded: None,
             stats: None,

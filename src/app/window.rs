@@ -154,7 +154,7 @@ impl Open {
             None => (left, f32::MAX),
         };
         let presented = Presented { left, right, split_px, behind: BEHIND };
-        let group = self.present.prepare((&gpu.device, &gpu.queue), &presented);
+        let group = self.present.prepare((&gpu.device, &gpu.queue), &presented)?;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("window") });
         self.gui.prepare(gpu, &mut encoder, frame);
         {

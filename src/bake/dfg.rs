@@ -6,7 +6,7 @@
 
 use super::table::{EmbeddedTable, unorm16};
 use crate::reference::albedo::DfgIntegrator;
-use rayon::prelude::*;
+use crate::threads::*;
 
 /// Rows and columns of the table.
 pub const SIZE: usize = 128;

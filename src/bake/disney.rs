@@ -16,7 +16,7 @@
 
 use super::table::{EmbeddedTable, unorm16};
 use crate::reference::disney::albedo::DisneyAlbedo;
-use rayon::prelude::*;
+use crate::threads::*;
 use std::f64::consts::PI;
 
 /// Columns and rows of a tile.

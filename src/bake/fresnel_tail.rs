@@ -6,7 +6,7 @@
 use super::dfg::SIZE;
 use super::table::{EmbeddedTable, unorm16};
 use crate::reference::albedo::DfgIntegrator;
-use rayon::prelude::*;
+use crate::threads::*;
 
 /// The term's maximum is (1/7) (6/7)^6 = 0.057, so 16 times it fills the range.
 pub const SCALE: f64 = 16.0;

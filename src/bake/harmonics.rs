@@ -7,8 +7,8 @@
 //! +Y and phi = 2 pi u. The panorama is real, so that only orders m >= 0 are stored.
 
 use super::panorama::Panorama;
+use crate::threads::*;
 use glam::DVec3;
-use rayon::prelude::*;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 use std::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! Diffuse light of a panorama: irradiance as spherical harmonics of degree 2.
 
 use crate::scene::EnvironmentImage;
+use crate::threads::*;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Irradiance / pi of the panorama, taken as constant within each texel, in the polynomial form that

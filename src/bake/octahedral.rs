@@ -2,8 +2,8 @@
 
 use crate::math::spaces::direction_from_octahedral;
 use crate::scene::SpecularTile;
+use crate::threads::*;
 use glam::{DVec2, DVec3, Vec3};
-use rayon::prelude::*;
 
 const BORDER: u32 = SpecularTile::BORDER;
 

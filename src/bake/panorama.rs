@@ -2,8 +2,8 @@
 
 use crate::math::spaces::equirect_from_direction;
 use crate::scene::EnvironmentImage;
+use crate::threads::*;
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 
 /// Radiance in the rows and columns of [`crate::scene::EnvironmentImage`].
 #[derive(Debug, Clone)]

@@ -24,10 +24,10 @@ mod shared;
 mod weights;
 
 use super::table::{EmbeddedTable, unorm16};
+use crate::threads::*;
 use fit::Lobes;
 use kernels::Kernels;
 use lobe::{PLACE_MAX, Tap};
-use rayon::prelude::*;
 use shared::{Shared, variables_of};
 use std::ops::Range;
 

@@ -16,8 +16,8 @@ use super::truth::TruthArgs;
 use super::view::ViewArgs;
 use crate::app::{Shown, ViewerState, environment_image, in_units, light_furnace, picture, view_of};
 use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
-use crate::gpu::Gpu;
 use crate::gpu::formats::Precision;
+use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::TextureLevels;
 use crate::import::{ImportOptions, Imported};
 use crate::progress::Progress;
@@ -248,7 +248,8 @@ fn draw(
     scene.images.iter_mut().for_each(Image::forget_texels);
     let (device, queue) = (&gpu.device, &gpu.queue);
     let (mut renderer, mut uploaded) = watch.time("upload", || -> Result<_, CliError> {
-        let renderer = Renderer::new(device, queue).with_paths(args.driver.paths_on(gpu));
+        let renderer =
+            Renderer::new(device, queue).with_uploads(Uploads::Bounded).with_paths(args.driver.paths_on(gpu));
         let uploaded = renderer
             .upload_with(device, queue, scene, levels, baked.as_ref().map(|baked| &baked.maps))
             .map_err(CaptureError::from)?;

@@ -7,7 +7,7 @@ use super::stats::Stopwatch;
 use super::subject::SubjectArgs;
 use crate::app::{in_units, picture};
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame, Wanted, submit};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::GpuScene;
 use crate::import::model_files;
 use crate::progress::Progress;
@@ -43,7 +43,7 @@ struct Subject {
 
 impl<'a> Stage<'a> {
     pub(super) fn new(gpu: &'a Gpu, cache: &'a CacheArgs, progress: &'a dyn Progress) -> Self {
-        let renderer = Renderer::new(&gpu.device, &gpu.queue);
+        let renderer = Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded);
         Self { gpu, cache, progress, renderer, subject: None, maps: Vec::new(), target: None, hashes: HashMap::new() }
     }
 

@@ -16,6 +16,7 @@ pub(super) fn check(asset: &Scene) -> Result<(), EmbedError> {
         let channels = match &image.pixels {
             Pixels::Rgba8(texels) => texels.len(),
             Pixels::Rgba16(texels) => texels.len(),
+            Pixels::OfHost => continue,
         };
         let (width, height) = (image.width, image.height);
         let expected = u64::from(width) * u64::from(height) * 4;
@@ -66,6 +67,26 @@ pub(super) fn check_uvs(material: &Material, primitive: &Primitive) -> Result<()
             let name = slot.name();
             fault(format!("the {name} texture reads the texture coordinates {uv_set}, of which there are {sets} sets"))
         }
+        None => Ok(()),
+    }
+}
+
+/// Whether materials can sample a texture on its device. Whether floats of 32 bits can be filtered is known to that.
+pub(super) fn check_host_texture(texture: &wgpu::Texture) -> Result<(), EmbedError> {
+    let format = texture.format();
+    let features = wgpu::Features::FLOAT32_FILTERABLE;
+    let is_float = wgpu::TextureSampleType::Float { filterable: true };
+    let faults = [
+        (
+            texture.dimension() != wgpu::TextureDimension::D2 || texture.depth_or_array_layers() != 1,
+            "is not one picture",
+        ),
+        (texture.sample_count() != 1, "has several samples a pixel"),
+        (!texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING), "was not made to be bound"),
+        (format.sample_type(None, Some(features)) != Some(is_float), "cannot be filtered"),
+    ];
+    match faults.into_iter().find(|(is_fault, _)| *is_fault) {
+        Some((_, what)) => fault(format!("the texture of the host {what}")),
         None => Ok(()),
     }
 }

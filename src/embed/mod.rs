@@ -2,11 +2,16 @@
 //! again.
 
 mod check;
+mod environment;
+mod hosted;
 mod merge;
+mod pick;
 mod requirements;
 mod scene;
 mod slots;
 
+pub use environment::EnvironmentDownload;
+pub use pick::{Hit, Pick};
 pub use requirements::{Degraded, Requirements};
 pub use scene::LiveScene;
 

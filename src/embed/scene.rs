@@ -1,12 +1,13 @@
 //! The scene itself: what is changed, and how little of it is uploaded.
 
+use super::hosted::Hosted;
 use super::merge::{self, Model};
 use super::slots::Slots;
 use super::{EmbedError, ModelId, check};
 use crate::gpu::Identity;
-use crate::gpu_scene::GpuScene;
+use crate::gpu_scene::{GpuScene, TextureLevels};
 use crate::renderer::{RenderError, Renderer};
-use crate::scene::{Environment, EnvironmentMaps, Light, Material, Scene};
+use crate::scene::{Environment, EnvironmentMaps, Light, Material, Pixels, Placed, Scene};
 use glam::DMat4;
 use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
@@ -25,7 +26,10 @@ pub struct LiveScene {
     scene: Scene,
     maps: Option<Arc<EnvironmentMaps>>,
     models: Slots<Model>,
+    hosted: Hosted,
     uploaded: Option<Uploaded>,
+    /// As of the last change of a place or a light.
+    placed: Placed,
     pending: Pending,
     uploads: u64,
 }
@@ -60,7 +64,9 @@ impl Default for LiveScene {
             scene: Scene::default(),
             maps: None,
             models: Slots::new(),
+            hosted: Hosted::default(),
             uploaded: None,
+            placed: Placed::default(),
             pending: Pending::default(),
             uploads: 0,
         }
@@ -94,6 +100,7 @@ impl LiveScene {
         self.settle_materials();
         let removed = self.models.remove((id.index, id.generation)).ok_or(EmbedError::StaleHandle)?;
         merge::remove(&mut self.scene, &removed);
+        self.hosted.forget(id);
         self.models.values_mut().for_each(|model| *model = merge::moved_up(model, &removed));
         (self.pending.all, self.pending.images) = (true, true);
         Ok(())
@@ -142,6 +149,33 @@ impl LiveScene {
         users.into_iter().try_for_each(|primitive| check::check_uvs(&new, primitive))?;
         self.pending.materials.retain(|(pending, _)| *pending != place);
         self.pending.materials.push((place, merge::of_model(new, &model)));
+        Ok(())
+    }
+
+    /// Gives an image of a model that is [`Pixels::OfHost`], numbered as in its asset, to a renderer: what the host has drawn
+    /// there when its submissions run is what the material shows. Whatever sampling it gives is taken as linear, so colours
+    /// come as a view in an sRGB format or as floats; of the view's levels all are used. Normal maps cannot be given.
+    ///
+    /// A view belongs to a device: after [`Renderer::restore`] the host gives another.
+    ///
+    /// # Errors
+    /// For a stale handle, an image that is not there, one that has texels of its own, and a texture that materials cannot
+    /// sample. Images that were not given are [`crate::gpu_scene::UploadError::NoHostTexture`] at the next update.
+    pub fn set_image(
+        &mut self,
+        renderer: &Renderer,
+        id: ModelId,
+        image: usize,
+        view: wgpu::TextureView,
+    ) -> Result<(), EmbedError> {
+        let Model { first, count } = *self.model(id)?;
+        let place = first.images + below("image", image, count.images)?;
+        if !matches!(self.scene.images[place].pixels, Pixels::OfHost) {
+            return Err(EmbedError::Asset(format!("image {image} has texels of its own")));
+        }
+        check::check_host_texture(view.texture())?;
+        self.hosted.insert((id, image), renderer.identity.clone(), view);
+        self.pending.all = true;
         Ok(())
     }
 
@@ -199,12 +233,13 @@ impl LiveScene {
     /// not submitted shows them too.
     ///
     /// # Errors
-    /// Where the scene does not fit on the device. The changes stay to be made.
+    /// [`RenderError::DeviceLost`], and where the scene does not fit on the device. The changes stay to be made.
     pub fn update(
         &mut self,
         renderer: &Renderer,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
     ) -> Result<&mut GpuScene, EmbedError> {
+        renderer.check_device()?;
         let mut previous = self.uploaded.take().filter(|uploaded| uploaded.renderer == renderer.identity);
         let is_written = match &mut previous {
             Some(uploaded) if !self.pending.all => self.write(queue, &mut uploaded.scene),
@@ -235,11 +270,17 @@ impl LiveScene {
         previous: Option<GpuScene>,
     ) -> Result<GpuScene, RenderError> {
         let maps = self.maps.as_deref();
+        let first_image = |id: ModelId| Some(self.models.get((id.index, id.generation))?.first.images);
+        let of_host = self.hosted.of(&renderer.identity, first_image);
         match previous.filter(|_| !self.pending.images) {
-            Some(previous) => {
+            Some(mut previous) => {
+                previous.set_host_textures(of_host);
                 renderer.upload_again(device, queue, &self.scene, (maps, !self.pending.other_light), previous)
             }
-            None => renderer.upload(device, queue, &self.scene, maps),
+            None => {
+                let levels = TextureLevels::of(&self.scene, device.limits().max_texture_dimension_2d);
+                renderer.upload_with(device, queue, &self.scene, levels.with_host_textures(of_host), maps)
+            }
         }
     }
 
@@ -251,11 +292,14 @@ impl LiveScene {
             self.scene.materials[index] = new;
             self.pending.all |= !fits;
         }
-        if self.pending.all || (moved && !uploaded.move_instances(queue, &self.scene.instances())) {
+        if moved || lights {
+            self.placed.place(&self.scene);
+        }
+        if self.pending.all || (moved && !uploaded.move_instances(queue, self.placed.instances())) {
             return false;
         }
         let has_lights = !self.scene.lights.is_empty();
-        if (lights || (moved && has_lights)) && !uploaded.set_lights(queue, &self.scene) {
+        if (lights || (moved && has_lights)) && !uploaded.set_lights(queue, &self.scene, self.placed.lights()) {
             return false;
         }
         let Some(maps) = &self.maps else { return true };
@@ -279,6 +323,12 @@ impl LiveScene {
         self.scene.nodes[node].parent_from_node = parent_from_node;
         self.pending.moved = true;
         Ok(())
+    }
+
+    /// All models with their places in the scene.
+    pub(super) fn models(&self) -> impl Iterator<Item = (ModelId, Model)> {
+        let scene = self.id;
+        self.models.iter().map(move |((index, generation), model)| (ModelId { scene, index, generation }, *model))
     }
 
     fn model(&self, id: ModelId) -> Result<&Model, EmbedError> {

@@ -41,6 +41,11 @@ impl<T> Slots<T> {
         Some(value)
     }
 
+    /// All values with their index and generation.
+    pub(super) fn iter(&self) -> impl Iterator<Item = ((u32, u32), &T)> {
+        (0..).zip(&self.slots).filter_map(|(index, slot)| Some(((index, slot.generation), slot.value.as_ref()?)))
+    }
+
     pub(super) fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.slots.iter_mut().filter_map(|slot| slot.value.as_mut())
     }
@@ -61,6 +66,7 @@ mod tests {
         assert_eq!(slots.remove((7, 0)), None);
         slots.values_mut().for_each(|value| *value = "d");
         assert_eq!([slots.get(b), slots.get(c)], [Some(&"d"); 2]);
+        assert!(slots.iter().eq([(c, &"d"), (b, &"d")]));
     }
 
     #[test]

@@ -84,6 +84,12 @@ impl Drawables {
         self.draws.iter().find(|drawable| (drawable.mesh, drawable.primitive) == first)
     }
 
+    /// The primitive of a mesh that is drawn as `drawable`; the first, if the mesh has several of the same.
+    pub fn primitive_of(&self, mesh: usize, drawable: &Drawable) -> usize {
+        let place = (drawable.mesh, drawable.primitive);
+        self.first_of_same[mesh].iter().position(|first| *first == place).unwrap_or(drawable.primitive)
+    }
+
     /// Moves every instance to its place in `moved`, which are those of the scene in its order. Returns the range of
     /// instances that are elsewhere now; `None`, and nothing has changed, where they are not the same meshes of the same
     /// handedness, so that other draws are needed.

@@ -1,7 +1,7 @@
 //! Finding an adapter and opening it for headless work.
 
 use super::formats::Precision;
-use std::sync::atomic::{AtomicBool, Ordering};
+use super::lost::{DeviceLost, LostFlag};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Which adapter is wanted.
@@ -33,6 +33,8 @@ pub enum GpuError {
     NoSurface(String),
     #[error("the GPU failed: {0}")]
     Failed(String),
+    #[error(transparent)]
+    Lost(#[from] DeviceLost),
 }
 
 /// An open device of our own, for capture and tests; embedders bring theirs.
@@ -44,7 +46,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     instance: wgpu::Instance,
     errors: Arc<Mutex<Vec<String>>>,
-    lost: Arc<AtomicBool>,
+    lost: LostFlag,
 }
 
 /// The optional features that Specula uses when they are there; none is required.
@@ -123,9 +125,7 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             sink.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
         }));
-        let lost = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&lost);
-        device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::Relaxed));
+        let lost = LostFlag::watch(&device);
         Ok(Self { info, adapter, device, queue, instance, errors, lost })
     }
 
@@ -133,7 +133,12 @@ impl Gpu {
     pub fn is_lost(&self) -> bool {
         // What is wrong with a device that cannot be asked shows in the flag, or at the next frame.
         let _ = self.device.poll(wgpu::PollType::Poll);
-        self.lost.load(Ordering::Relaxed)
+        self.lost.is_raised()
+    }
+
+    /// What says so without asking the driver.
+    pub fn lost_flag(&self) -> &LostFlag {
+        &self.lost
     }
 
     /// Fails when the driver or wgpu has reported anything since the last call.

@@ -1,7 +1,7 @@
 //! What a pass binds, kept from frame to frame.
 
+use super::lost::{DeviceLost, filled_buffer, write_buffer};
 use std::sync::Arc;
-use wgpu::util::DeviceExt;
 
 /// Tells a thing from all others, for as long as somebody remembers it. Handles of wgpu do not: those of two instances may
 /// be equal, so that what is kept of a lost device is mistaken for something of the next.
@@ -40,6 +40,9 @@ impl<K: PartialEq> KeptUniform<K> {
     /// The group that `bind` makes of a uniform buffer with `contents` and of what is `beside` it.
     ///
     /// The contents are written when the queue is submitted to next: one group serves one frame of a submission.
+    ///
+    /// # Errors
+    /// [`DeviceLost`] where nothing can be made or written.
     pub fn group(
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
@@ -47,23 +50,25 @@ impl<K: PartialEq> KeptUniform<K> {
         contents: &[u8],
         beside: K,
         bind: impl FnOnce(&wgpu::Buffer, &K) -> wgpu::BindGroup,
-    ) -> wgpu::BindGroup {
+    ) -> Result<wgpu::BindGroup, DeviceLost> {
         let kept = self.kept.take().filter(|kept| kept.beside == beside && kept.contents.len() == contents.len());
-        let mut kept = kept.unwrap_or_else(|| {
-            self.made += 2;
-            let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-            let descriptor = wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage };
-            let buffer = device.create_buffer_init(&descriptor);
-            let group = bind(&buffer, &beside);
-            Kept { beside, contents: contents.to_vec(), buffer, group }
-        });
+        let mut kept = match kept {
+            Some(kept) => kept,
+            None => {
+                let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+                let buffer = filled_buffer(device, label, contents, usage)?;
+                let group = bind(&buffer, &beside);
+                self.made += 2;
+                Kept { beside, contents: contents.to_vec(), buffer, group }
+            }
+        };
         if kept.contents != contents {
-            queue.write_buffer(&kept.buffer, 0, contents);
+            write_buffer(queue, &kept.buffer, 0, contents)?;
             kept.contents.copy_from_slice(contents);
         }
         let group = kept.group.clone();
         self.kept = Some(kept);
-        group
+        Ok(group)
     }
 
     /// Lets go of buffer and group.

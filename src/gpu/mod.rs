@@ -4,11 +4,13 @@ pub mod bindings;
 mod device;
 pub mod formats;
 mod kept;
+mod lost;
 pub mod pipeline;
 mod readback;
 mod staging;
 
 pub use device::{Gpu, GpuError, GpuOptions, GpuRequest, adapters, usable_features, usable_limits};
 pub use kept::{Identity, KeptUniform};
-pub use readback::{Readback, read_buffer, read_texel, read_texture};
-pub use staging::Staging;
+pub use lost::{DeviceLost, LostFlag, filled_buffer, write_buffer};
+pub use readback::{Download, Readback, read_buffer, read_texel, read_texture};
+pub use staging::{Staging, Uploads};

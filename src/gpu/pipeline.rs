@@ -1,6 +1,17 @@
 //! What render pipelines have in common.
 
 use super::formats;
+use super::lost::DeviceLost;
+use crate::shader::ShaderError;
+
+/// Why a pass could not be made ready.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PassError {
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    #[error(transparent)]
+    DeviceLost(#[from] DeviceLost),
+}
 
 /// The depth buffer of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

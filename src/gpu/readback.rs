@@ -1,7 +1,9 @@
 //! Copying textures and buffers back to memory.
 
 use super::device::{Gpu, GpuError};
+use super::lost::DeviceLost;
 use glam::UVec2;
+use std::sync::{Arc, OnceLock};
 
 /// A texture or a buffer on its way to memory.
 #[derive(Debug)]
@@ -77,11 +79,46 @@ impl Readback {
             Ok(Err(error)) => return Err(GpuError::Failed(format!("mapping the result: {error}"))),
             Err(_) => return Err(GpuError::Failed("mapping the result: no answer".into())),
         }
-        let mapped = self.buffer.slice(..).get_mapped_range().map_err(|error| GpuError::Failed(error.to_string()))?;
+        self.bytes().map_err(|error| GpuError::Failed(error.to_string()))
+    }
+
+    /// Has the bytes mapped when `encoder` is submitted: whoever polls the device makes them come.
+    pub fn on_submit(self, encoder: &wgpu::CommandEncoder) -> Download {
+        let arrived = Arc::new(OnceLock::new());
+        let answer = Arc::clone(&arrived);
+        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| {
+            // Called once.
+            let _ = answer.set(result.is_ok());
+        });
+        Download { readback: self, arrived }
+    }
+
+    /// What has been mapped.
+    fn bytes(&self) -> Result<Vec<u8>, wgpu::MapRangeError> {
+        let mapped = self.buffer.slice(..).get_mapped_range()?;
         let mut bytes = Vec::with_capacity(self.row_bytes * self.rows);
         for row in mapped.chunks_exact(self.padded_row_bytes) {
             bytes.extend_from_slice(&row[..self.row_bytes]);
         }
         Ok(bytes)
+    }
+}
+
+/// Bytes on their way to memory, for which nobody waits.
+#[derive(Debug)]
+pub struct Download {
+    readback: Readback,
+    /// Whether they could be mapped.
+    arrived: Arc<OnceLock<bool>>,
+}
+
+impl Download {
+    /// The bytes, row-major without padding, once the submission is done and the device was polled; `None` before.
+    ///
+    /// # Errors
+    /// [`DeviceLost`] where they never come.
+    pub fn try_bytes(&self) -> Option<Result<Vec<u8>, DeviceLost>> {
+        let is_mapped = *self.arrived.get()?;
+        Some(if is_mapped { self.readback.bytes().map_err(|_| DeviceLost) } else { Err(DeviceLost) })
     }
 }

@@ -2,12 +2,23 @@
 
 use std::collections::VecDeque;
 
-/// Writes textures through a bounded amount of memory: what is written is staged once more, and stays so until the device
-/// is done with the submission that takes it.
+/// How the texels of an upload get to the device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Uploads {
+    /// All are staged until the queue is submitted to next; nothing is submitted, polled or waited for.
+    #[default]
+    Queued,
+    /// At most [`Staging::LIMIT_BYTES`] are staged at a time: uploads submit, and wait until the device has everything.
+    Bounded,
+}
+
+/// Writes textures: what is written is staged once more, and stays so until the device is done with the submission that
+/// takes it.
 #[derive(Debug)]
 pub struct Staging<'a> {
-    device: &'a wgpu::Device,
-    queue: &'a wgpu::Queue,
+    pub device: &'a wgpu::Device,
+    pub queue: &'a wgpu::Queue,
+    uploads: Uploads,
     /// Written, but not submitted yet.
     written_bytes: u64,
     /// What earlier submissions take, the oldest first.
@@ -22,14 +33,16 @@ impl<'a> Staging<'a> {
     /// From here on a submission is worth its cost.
     const SUBMITTED_BYTES: u64 = 4 << 20;
 
-    pub fn new(device: &'a wgpu::Device, queue: &'a wgpu::Queue) -> Self {
-        Self { device, queue, written_bytes: 0, submitted: VecDeque::new() }
+    pub fn new(device: &'a wgpu::Device, queue: &'a wgpu::Queue, uploads: Uploads) -> Self {
+        Self { device, queue, uploads, written_bytes: 0, submitted: VecDeque::new() }
     }
 
-    /// Writes `bytes`, tightly packed rows from the top, to a whole level. May wait for what was written before.
+    /// Writes `bytes`, tightly packed rows from the top, to a whole level. Bounded uploads may wait for what was
+    /// written before.
     pub fn write(&mut self, texture: &wgpu::Texture, mip_level: u32, bytes: &[u8]) {
         let count = bytes.len() as u64;
-        while self.staged_bytes() > 0 && self.staged_bytes() + count > Self::LIMIT_BYTES {
+        let is_bounded = self.uploads == Uploads::Bounded;
+        while is_bounded && self.staged_bytes() > 0 && self.staged_bytes() + count > Self::LIMIT_BYTES {
             self.wait_for_the_oldest();
         }
         let side = |side: u32| (side >> mip_level).max(1);
@@ -47,14 +60,14 @@ impl<'a> Staging<'a> {
         let target = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
         self.queue.write_texture(target, bytes, layout, size);
         self.written_bytes += count;
-        if self.written_bytes >= Self::SUBMITTED_BYTES {
+        if is_bounded && self.written_bytes >= Self::SUBMITTED_BYTES {
             self.submit();
         }
     }
 
-    /// Waits until the device has all that was written, and so nothing is staged.
+    /// Waits until the device has all that was written, and so nothing is staged, if uploads are bounded.
     pub fn finish(&mut self) {
-        while self.staged_bytes() > 0 {
+        while self.uploads == Uploads::Bounded && self.staged_bytes() > 0 {
             self.wait_for_the_oldest();
         }
     }

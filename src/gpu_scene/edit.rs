@@ -1,11 +1,13 @@
 //! Changes to a scene that stay within its buffers: no pipeline, no bind group and no texture is made for them.
 
 use super::{GpuScene, gpu_instance};
-use crate::scene::{EnvironmentMaps, Instance, Material, Scene, TextureSlot};
+use crate::gpu::write_buffer;
+use crate::scene::{EnvironmentMaps, Instance, LightInWorld, Material, Scene, TextureSlot};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
 
 /// Each change is written when the queue is submitted to next, and so seen by all frames that are submitted then. Each
 /// returns false, and nothing has changed, where more than numbers would be others: then the scene is to be uploaded again.
+/// So it is on a lost device, where that fails.
 impl GpuScene {
     /// Moves all instances to their places in `moved`, see [`Scene::instances`]. Such a scene takes the forward path.
     pub fn move_instances(&mut self, queue: &wgpu::Queue, moved: &[Instance]) -> bool {
@@ -14,10 +16,12 @@ impl GpuScene {
             return true;
         }
         let placed = &self.drawables.instances[range.clone()];
-        let data: Vec<types::Instance> =
-            placed.iter().map(|placed| gpu_instance(placed, self.drawables.origin_in_world)).collect();
+        self.moved.clear();
+        self.moved.extend(placed.iter().map(|placed| gpu_instance(placed, self.drawables.origin_in_world)));
         let offset = range.start * size_of::<types::Instance>();
-        queue.write_buffer(&self.instances, offset as u64, bytemuck::cast_slice(&data));
+        if write_buffer(queue, &self.instances, offset as u64, bytemuck::cast_slice(&self.moved)).is_err() {
+            return false;
+        }
         // It has the place of its instance within.
         self.pulled = None;
         self.was_edited();
@@ -37,21 +41,19 @@ impl GpuScene {
             MaterialFeatures::of(new, primitive, scene, self.features) == drawable.material_features
         });
         if is_alike {
-            drawn().for_each(|(_, draw)| draw.material.write(queue, new));
+            let written = drawn().all(|(_, draw)| draw.material.write(queue, new).is_ok());
             self.was_edited();
+            return written;
         }
-        is_alike
+        false
     }
 
-    /// Takes the lights of `scene`, of which this was made, as they are now.
-    pub fn set_lights(&mut self, queue: &wgpu::Queue, scene: &Scene) -> bool {
-        let features = SceneFeatures { suns: self.features.suns, ..SceneFeatures::of(scene) };
+    /// Takes the lights of `scene`, of which this was made, as they are now, and in the world.
+    pub fn set_lights(&mut self, queue: &wgpu::Queue, scene: &Scene, lights_in_world: &[LightInWorld]) -> bool {
+        let features = SceneFeatures { suns: self.features.suns, ..SceneFeatures::lit_by(scene, lights_in_world) };
         let origin_in_world = self.drawables.origin_in_world;
         let replaced = features == self.features
-            && self
-                .lights
-                .as_mut()
-                .is_none_or(|lights| lights.replace(queue, &scene.lights_in_world(), origin_in_world));
+            && self.lights.as_mut().is_none_or(|lights| lights.replace(queue, lights_in_world, origin_in_world));
         if replaced {
             self.was_edited();
         }

@@ -1,15 +1,14 @@
 //! An environment on the GPU: the prefiltered atlas, its uniform, and the panorama when it is seen.
 
 use super::UploadError;
-use crate::gpu::{Staging, formats};
+use crate::gpu::{DeviceLost, Staging, filled_buffer, formats, write_buffer};
 use crate::scene::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile};
 use crate::shader::types::EnvironmentUniform;
+use crate::threads::*;
 use glam::{DMat3, Vec3};
 use half::f16;
 use half::slice::HalfFloatSliceExt;
-use rayon::prelude::*;
 use std::sync::Arc;
-use wgpu::util::DeviceExt;
 
 /// Radiance that half floats hold with room for a filter's rounding.
 const HALF_MAX: f32 = 65000.0;
@@ -42,11 +41,9 @@ pub(crate) struct WhiteFurnace {
 }
 
 impl WhiteFurnace {
-    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, UploadError> {
-        let mut staging = Staging::new(device, queue);
+    pub(crate) fn new(mut staging: Staging<'_>) -> Result<Self, UploadError> {
         // Wherever a lookup falls, it finds this texel.
-        let (atlas, scale) = upload(device, &mut staging, "white furnace", 1, 1, &[Vec3::ONE])?;
-        staging.finish();
+        let (atlas, scale) = upload(&mut staging, "white furnace", 1, 1, &[Vec3::ONE])?;
         let mut irradiance_over_pi = [[0.0; 4]; 9];
         irradiance_over_pi[0] = [1.0; 4];
         let uniform = EnvironmentUniform {
@@ -56,14 +53,15 @@ impl WhiteFurnace {
             radiance_scale: scale,
             ..Default::default()
         };
-        Ok(Self { atlas, uniform: uniform_buffer(device, &uniform) })
+        let uniform = uniform_buffer(staging.device, &uniform)?;
+        staging.finish();
+        Ok(Self { atlas, uniform })
     }
 }
 
 impl GpuEnvironment {
     /// With the textures of the `previous` one, if that was made of the same image and maps.
     pub(crate) fn new(
-        device: &wgpu::Device,
         staging: &mut Staging<'_>,
         environment: &Environment,
         maps: &EnvironmentMaps,
@@ -73,13 +71,13 @@ impl GpuEnvironment {
             Some(previous) => (previous.atlas, previous.atlas_scale, previous.panorama),
             None => {
                 let (width, height) = (maps.atlas_width, maps.atlas_height);
-                let (atlas, scale) = upload(device, staging, "environment atlas", width, height, &maps.texels)?;
+                let (atlas, scale) = upload(staging, "environment atlas", width, height, &maps.texels)?;
                 (atlas, scale, None)
             }
         };
         let sides = tile_sides(maps)?;
         let contents = uniform(environment, maps, scale, sides);
-        let uniform = uniform_buffer(device, &contents);
+        let uniform = uniform_buffer(staging.device, &contents)?;
         Ok(Self {
             atlas,
             atlas_scale: scale,
@@ -91,14 +89,17 @@ impl GpuEnvironment {
         })
     }
 
-    /// Turns and dims the environment as it is now. Returns false, and nothing has changed, where it is of another image.
+    /// Turns and dims the environment as it is now. Returns false, and nothing has changed, where it is of another image, and on a
+    /// lost device.
     pub(super) fn replace(&mut self, queue: &wgpu::Queue, environment: &Environment, maps: &EnvironmentMaps) -> bool {
         let size = self.atlas.texture().size();
         let is_same = Arc::ptr_eq(&self.image, &environment.image)
             && (size.width, size.height) == (maps.atlas_width, maps.atlas_height);
         let (true, Ok(sides)) = (is_same, tile_sides(maps)) else { return false };
         let contents = uniform(environment, maps, self.atlas_scale, sides);
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&contents));
+        if write_buffer(queue, &self.uniform, 0, bytemuck::bytes_of(&contents)).is_err() {
+            return false;
+        }
         self.environment_from_world = environment_from_world(environment);
         self.intensity = environment.intensity as f32;
         true
@@ -110,24 +111,21 @@ impl GpuEnvironment {
     }
 
     /// The panorama, uploaded when it is first seen.
-    pub(crate) fn panorama(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Panorama, UploadError> {
+    pub(crate) fn panorama(&mut self, mut staging: Staging<'_>) -> Result<Panorama, UploadError> {
         if let Some(panorama) = &self.panorama {
             return Ok(panorama.clone());
         }
         let EnvironmentImage { width, height, ref texels } = *self.image;
-        let (view, scale) = upload(device, &mut Staging::new(device, queue), "panorama", width, height, texels)?;
+        let (view, scale) = upload(&mut staging, "panorama", width, height, texels)?;
         let panorama = Panorama { view, scale };
         self.panorama = Some(panorama.clone());
         Ok(panorama)
     }
 }
 
-fn uniform_buffer(device: &wgpu::Device, contents: &EnvironmentUniform) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("environment"),
-        contents: bytemuck::bytes_of(contents),
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-    })
+fn uniform_buffer(device: &wgpu::Device, contents: &EnvironmentUniform) -> Result<wgpu::Buffer, DeviceLost> {
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    filled_buffer(device, "environment", bytemuck::bytes_of(contents), usage)
 }
 
 fn environment_from_world(environment: &Environment) -> DMat3 {
@@ -182,21 +180,20 @@ pub(crate) fn columns(matrix: DMat3) -> [[f32; 4]; 3] {
 }
 
 fn upload(
-    device: &wgpu::Device,
     staging: &mut Staging<'_>,
     label: &str,
     width: u32,
     height: u32,
     texels: &[Vec3],
 ) -> Result<(wgpu::TextureView, f32), UploadError> {
-    let allowed = device.limits().max_texture_dimension_2d;
+    let allowed = staging.device.limits().max_texture_dimension_2d;
     if width.max(height) > allowed {
         return Err(UploadError::EnvironmentTooLarge { width, height, allowed });
     }
-    let peak = texels.par_iter().map(|texel| texel.max_element()).reduce(|| 0.0, f32::max);
+    let peak = texels.par_iter().map(|texel| texel.max_element()).max_by(f32::total_cmp).unwrap_or(0.0);
     let scale = (peak / HALF_MAX).max(1.0);
     let halves = halves(texels, scale);
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
+    let texture = staging.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,

@@ -2,11 +2,11 @@
 
 use super::UploadError;
 use crate::frame::{Drawables, PrimitivePlace};
+use crate::gpu::filled_buffer;
 use crate::scene::{Primitive, Scene};
 use crate::shader::VertexFeatures;
 use std::collections::HashMap;
 use std::ops::Range;
-use wgpu::util::DeviceExt;
 
 /// Where a primitive's data lie.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ pub(crate) fn upload_primitives(
         if needed > allowed {
             return Err(UploadError::TooLarge { what, needed, allowed });
         }
-        Ok(device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(what), contents, usage }))
+        Ok(filled_buffer(device, what, contents, usage)?)
     };
     Ok(Geometry {
         vertices: buffer("vertex data", &vertices, wgpu::BufferUsages::VERTEX)?,

@@ -2,15 +2,17 @@
 
 use super::UploadError;
 use crate::frame::{Reach, clusters};
+use crate::gpu::{DeviceLost, filled_buffer, write_buffer};
 use crate::scene::{Camera, LightInWorld, LightKind, View};
 use crate::shader::{FEW_LIGHTS, LightList, types};
 use glam::{DVec3, UVec2};
-use wgpu::util::DeviceExt;
 
 /// The lights of a scene.
 #[derive(Debug)]
 pub(crate) struct GpuLights {
     pub(super) buffer: wgpu::Buffer,
+    /// As they were when they were written.
+    lights: Vec<LightInWorld>,
     sorted: Sorted,
     list: LightList,
     last: Option<GpuClusters>,
@@ -77,19 +79,25 @@ impl GpuLights {
             LightList::Few => wgpu::BufferUsages::UNIFORM,
             _ => wgpu::BufferUsages::STORAGE,
         };
-        let buffer = buffer(device, "lights", bytemuck::cast_slice(&data), usage | wgpu::BufferUsages::COPY_DST);
-        Ok(Self { buffer, sorted, list, last: None })
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        let buffer = filled_buffer(device, "lights", bytemuck::cast_slice(&data), usage)?;
+        Ok(Self { buffer, lights: lights.to_vec(), sorted, list, last: None })
     }
 
     /// Replaces the lights by others that are found in the same way. Returns false, and nothing has changed, where they need
-    /// more room or less.
+    /// more room or less, and on a lost device.
     pub(super) fn replace(&mut self, queue: &wgpu::Queue, lights: &[LightInWorld], origin_in_world: DVec3) -> bool {
+        if self.lights == lights {
+            return true;
+        }
         let (sorted, data) = Sorted::new(lights, origin_in_world, self.list);
-        if size_of_val(&data[..]) as u64 != self.buffer.size() {
+        let fits = size_of_val(&data[..]) as u64 == self.buffer.size();
+        if !fits || write_buffer(queue, &self.buffer, 0, bytemuck::cast_slice(&data)).is_err() {
             return false;
         }
-        queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&data));
         (self.sorted, self.last) = (sorted, None);
+        self.lights.clear();
+        self.lights.extend_from_slice(lights);
         true
     }
 
@@ -111,27 +119,24 @@ impl GpuLights {
         device: &wgpu::Device,
         origin_in_world: DVec3,
         view: &View,
-    ) -> Option<GpuClusters> {
+    ) -> Result<Option<GpuClusters>, DeviceLost> {
         if !self.list.is_clustered() {
-            return None;
+            return Ok(None);
         }
         let is_same = |last: &&GpuClusters| last.camera == view.camera && last.size_px == view.size_px;
         if let Some(last) = self.last.as_ref().filter(is_same) {
-            return Some(last.clone());
+            return Ok(Some(last.clone()));
         }
         let clusters =
             clusters(&self.sorted.reaches, self.sorted.unbounded, origin_in_world, &view.camera, view.size_px);
-        let uniform = buffer(device, "clusters", bytemuck::bytes_of(&clusters.uniform), wgpu::BufferUsages::UNIFORM);
+        let uniform = bytemuck::bytes_of(&clusters.uniform);
+        let uniform = filled_buffer(device, "clusters", uniform, wgpu::BufferUsages::UNIFORM)?;
         let table = bytemuck::cast_slice(&clusters.table);
-        let table = buffer(device, "lights of clusters", table, wgpu::BufferUsages::STORAGE);
+        let table = filled_buffer(device, "lights of clusters", table, wgpu::BufferUsages::STORAGE)?;
         let made = GpuClusters { camera: view.camera.clone(), size_px: view.size_px, uniform, table };
         self.last = Some(made.clone());
-        Some(made)
+        Ok(Some(made))
     }
-}
-
-fn buffer(device: &wgpu::Device, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
 }
 
 fn gpu_light(light: &LightInWorld, origin_in_world: DVec3) -> types::Light {

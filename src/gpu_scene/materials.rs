@@ -1,11 +1,11 @@
 //! Material uniforms and bind groups: one a material and set of features, with only what those features read.
 
-use super::entry;
 use super::tables::Table;
 use super::textures::{TextureCache, textures_of};
+use super::{UploadError, entry};
 use crate::frame::Drawables;
-use crate::gpu::Staging;
 use crate::gpu::bindings::material_layout;
+use crate::gpu::{DeviceLost, Staging, filled_buffer, write_buffer};
 use crate::scene::{AlphaMode, Disney, Material, MetalFresnel, Scene, TextureSlot};
 use crate::shader::{
     MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, Shading, disney_binding, material_samplers,
@@ -13,7 +13,6 @@ use crate::shader::{
 };
 use glam::Vec3;
 use std::collections::HashMap;
-use wgpu::util::DeviceExt;
 
 /// Bind groups of group 1 and their layouts.
 #[derive(Debug, Default)]
@@ -33,23 +32,24 @@ pub(crate) struct GpuMaterial {
 
 impl GpuMaterial {
     /// Writes the numbers of another material with the same features and textures.
-    pub(super) fn write(&self, queue: &wgpu::Queue, material: &Material) {
-        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform(material)));
+    pub(super) fn write(&self, queue: &wgpu::Queue, material: &Material) -> Result<(), DeviceLost> {
+        write_buffer(queue, &self.uniform, 0, bytemuck::bytes_of(&uniform(material)))?;
         if let (Some(buffer), Some(disney)) = (&self.disney, &material.disney) {
-            queue.write_buffer(buffer, 0, bytemuck::bytes_of(&disney_uniform(disney)));
+            write_buffer(queue, buffer, 0, bytemuck::bytes_of(&disney_uniform(disney)))?;
         }
+        Ok(())
     }
 }
 
 /// Uploads what the draws read, and what of their textures `cache` does not have.
 pub(crate) fn upload(
-    (device, queue): (&wgpu::Device, &wgpu::Queue),
     staging: &mut Staging<'_>,
     scene: &Scene,
     drawables: &Drawables,
     cache: &mut TextureCache,
     disney_table: &Table,
-) -> Materials {
+) -> Result<Materials, UploadError> {
+    let (device, queue) = (staging.device, staging.queue);
     let mut materials = Materials::default();
     let mut bound: HashMap<(usize, MaterialFeatures), GpuMaterial> = HashMap::new();
     let reads_table = drawables.draws.iter().any(|drawable| drawable.material_features.disney_table);
@@ -57,32 +57,33 @@ pub(crate) fn upload(
     for drawable in &drawables.draws {
         let key = (drawable.material, drawable.material_features);
         let layout = materials.layouts.entry(key.1).or_insert_with(|| material_layout(device, &key.1));
-        let group = bound
-            .entry(key)
-            .or_insert_with(|| bind(device, staging, scene, (cache, disney_table.as_ref()), layout, key));
-        materials.groups.push(group.clone());
+        let group = match bound.get(&key) {
+            Some(group) => group.clone(),
+            None => bind(staging, scene, (cache, disney_table.as_ref()), layout, key)?,
+        };
+        bound.insert(key, group.clone());
+        materials.groups.push(group);
     }
-    materials
+    Ok(materials)
 }
 
 fn bind(
-    device: &wgpu::Device,
     staging: &mut Staging<'_>,
     scene: &Scene,
     (cache, disney_table): (&mut TextureCache, Option<&wgpu::TextureView>),
     layout: &wgpu::BindGroupLayout,
     (index, features): (usize, MaterialFeatures),
-) -> GpuMaterial {
-    let material = &scene.materials[index];
+) -> Result<GpuMaterial, UploadError> {
+    let (device, material) = (staging.device, &scene.materials[index]);
     let name = material.name.as_deref().unwrap_or("material");
-    let uniform = uniform_buffer(device, name, bytemuck::bytes_of(&uniform(material)));
+    let uniform = uniform_buffer(device, name, bytemuck::bytes_of(&uniform(material)))?;
     let sampler_count = features.sampler_count();
     let samplers: Vec<wgpu::Sampler> = material_samplers(&features, material, scene)
         .into_iter()
         .map(|sampler| cache.sampler(device, sampler))
         .collect();
     let textures = textures_of(scene, material, &features).into_iter();
-    let views: Vec<wgpu::TextureView> = textures.map(|key| cache.view(device, staging, scene, key)).collect();
+    let views = textures.map(|key| cache.view(staging, scene, key)).collect::<Result<Vec<_>, _>>()?;
     let mut entries = vec![entry(MATERIAL_UNIFORM_BINDING, uniform.as_entire_binding())];
     for (index, sampler) in samplers.iter().enumerate() {
         let binding = MATERIAL_SAMPLER_BINDING + index as u32;
@@ -94,6 +95,7 @@ fn bind(
     }
     let disney = material.disney.filter(|_| features.shading == Shading::Disney);
     let disney = disney.map(|disney| uniform_buffer(device, "disney", bytemuck::bytes_of(&disney_uniform(&disney))));
+    let disney = disney.transpose()?;
     if let Some(disney) = &disney {
         entries.push(entry(disney_binding(&features), disney.as_entire_binding()));
     }
@@ -102,12 +104,11 @@ fn bind(
     }
     let label = material.name.as_deref();
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries });
-    GpuMaterial { group, uniform, disney }
+    Ok(GpuMaterial { group, uniform, disney })
 }
 
-fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+fn uniform_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> Result<wgpu::Buffer, DeviceLost> {
+    filled_buffer(device, label, contents, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST)
 }
 
 fn disney_uniform(disney: &Disney) -> types::DisneyUniform {

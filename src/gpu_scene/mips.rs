@@ -8,9 +8,9 @@ mod average;
 mod texels;
 
 use crate::scene::{Image, Pixels};
+use crate::threads::*;
 use average::{Bands, halve};
 use glam::Vec4;
-use rayon::prelude::*;
 use std::sync::Arc;
 use texels::{Encoder, Linear, Linear8, Linear16, signed};
 
@@ -69,7 +69,7 @@ impl Bytes {
 /// Level 0 and, with `mipmapped`, all smaller ones, from the first that is not larger than `max_side` on.
 ///
 /// 8-bit images give RGBA8 levels, encoded as they came; 16-bit ones linear RGBA16F. Normals are signed: in bytes, code 0
-/// of the image is -128; else [-1, 1] in the same steps, from -257/254 on.
+/// of the image is -128; else [-1, 1] in the same steps, from -257/254 on. Of a host's texture there are none.
 pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<Level> {
     match &image.pixels {
         Pixels::Rgba8(bytes) => {
@@ -86,6 +86,7 @@ pub fn chain(image: &Image, role: Role, mipmapped: bool, max_side: u32) -> Vec<L
             let largest = |encoder: &Encoder| Bytes::Own(encoder.encode_all(&texels, count));
             levels_of(image, &texels, (mipmapped, max_side), &Encoder::new(role, true), largest)
         }
+        Pixels::OfHost => Vec::new(),
     }
 }
 

@@ -13,13 +13,12 @@ mod textures;
 
 use crate::frame::{Drawables, PlacedInstance, is_deferrable};
 use crate::gpu::bindings::{self, frame_layout};
-use crate::gpu::{Identity, Staging};
+use crate::gpu::{DeviceLost, Identity, Staging, filled_buffer};
 use crate::scene::{EnvironmentMaps, MAX_SUNS, Scene};
 use crate::shader::{MaterialFeatures, SceneFeatures, types};
 use geometry::{GpuPrimitive, upload_primitives};
 use glam::{DMat3, DMat4, DVec3};
 use std::collections::HashMap;
-use wgpu::util::DeviceExt;
 
 pub use environment::Panorama;
 pub(crate) use environment::{GpuEnvironment, WhiteFurnace};
@@ -29,7 +28,7 @@ use materials::GpuMaterial;
 pub use pulled::PulledGeometry;
 pub use tables::Table;
 use textures::TextureCache;
-pub use textures::TextureLevels;
+pub use textures::{HostTextures, TextureLevels};
 
 /// Why a scene cannot be put on this device.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -42,6 +41,12 @@ pub enum UploadError {
     EnvironmentLayout,
     #[error("the scene has an environment, but no maps baked from it were given")]
     MissingMaps,
+    #[error("image {image} is a host's texture that was not given for this device")]
+    NoHostTexture { image: usize },
+    #[error("image {image} is a host's texture and read as {what}, which is not possible")]
+    HostTexture { image: usize, what: &'static str },
+    #[error(transparent)]
+    DeviceLost(#[from] DeviceLost),
 }
 
 /// Bytes of GPU memory that a scene takes, by kind.
@@ -84,6 +89,8 @@ pub struct GpuScene {
     pub(crate) lights: Option<GpuLights>,
     pub(crate) environment: Option<GpuEnvironment>,
     textures: TextureCache,
+    /// Instances on their way to the device.
+    moved: Vec<types::Instance>,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
     pub(crate) identity: Identity,
     /// Counts the edits since the upload.
@@ -100,36 +107,33 @@ pub struct SharedTextures {
 }
 
 impl GpuScene {
-    /// Uploads `scene` with the `levels` of its textures. `maps` are baked from its environment and needed when it has
+    /// Uploads `scene` through `staging` with the `levels` of its textures. `maps` are baked from its environment and needed when it has
     /// one; `disney_table` goes to the GPU when something reads it.
     pub fn new(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        staging: Staging<'_>,
         scene: &Scene,
         levels: TextureLevels,
         maps: Option<&EnvironmentMaps>,
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
-        Self::with_textures(device, queue, scene, (TextureCache::new(levels), None), maps, disney_table)
+        Self::with_textures(staging, scene, (TextureCache::new(levels), None), maps, disney_table)
     }
 
     /// The same of a scene of which all but the images is another now, with the textures of this one; and with those of
     /// its environment, where `same_light` says that image and maps are the same.
     pub fn again(
         self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        staging: Staging<'_>,
         scene: &Scene,
         (maps, same_light): (Option<&EnvironmentMaps>, bool),
         disney_table: &Table,
     ) -> Result<Self, UploadError> {
         let environment = self.environment.filter(|_| same_light);
-        Self::with_textures(device, queue, scene, (self.textures, environment), maps, disney_table)
+        Self::with_textures(staging, scene, (self.textures, environment), maps, disney_table)
     }
 
     fn with_textures(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        mut staging: Staging<'_>,
         scene: &Scene,
         (mut textures, light): (TextureCache, Option<GpuEnvironment>),
         maps: Option<&EnvironmentMaps>,
@@ -139,15 +143,12 @@ impl GpuScene {
         features.suns = maps.filter(|_| features.environment).map_or(0, |maps| maps.suns.len().min(MAX_SUNS) as u8);
         let drawables = Drawables::new(scene, features);
         let origin_in_world = drawables.origin_in_world;
-        let mut staging = Staging::new(device, queue);
+        let device = staging.device;
         let geometry = upload_primitives(device, scene, &drawables)?;
-        let materials =
-            materials::upload((device, queue), &mut staging, scene, &drawables, &mut textures, disney_table);
+        let materials = materials::upload(&mut staging, scene, &drawables, &mut textures, disney_table)?;
         textures.forget_levels();
         let environment = match (features.environment, &scene.environment, maps) {
-            (true, Some(environment), Some(maps)) => {
-                Some(GpuEnvironment::new(device, &mut staging, environment, maps, light)?)
-            }
+            (true, Some(environment), Some(maps)) => Some(GpuEnvironment::new(&mut staging, environment, maps, light)?),
             (true, ..) => return Err(UploadError::MissingMaps),
             (false, ..) => None,
         };
@@ -163,7 +164,7 @@ impl GpuScene {
             // An empty binding is not allowed; nothing reads the padding.
             let contents = if contents.is_empty() { &[0; 128] } else { contents };
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+            filled_buffer(device, label, contents, usage)
         };
         Ok(Self {
             features,
@@ -174,7 +175,8 @@ impl GpuScene {
             },
             warnings: textures.warnings.clone(),
             textures,
-            instances: storage("instances", bytemuck::cast_slice(&instance_data)),
+            moved: Vec::new(),
+            instances: storage("instances", bytemuck::cast_slice(&instance_data))?,
             lights,
             draws: geometry.primitives.into_iter().zip(materials.groups).map(GpuDraw::new).collect(),
             drawables,
@@ -187,6 +189,11 @@ impl GpuScene {
             identity: Identity::default(),
             revision: 0,
         })
+    }
+
+    /// Replaces the host's textures, for the next upload with the textures of this one.
+    pub fn set_host_textures(&mut self, of_host: HostTextures) {
+        self.textures.of_host = of_host;
     }
 
     /// Uploads the geometry of `scene`, of which this was made, once more, so that surfaces can be shaded in a pass of

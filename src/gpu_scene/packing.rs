@@ -1,7 +1,7 @@
 //! Two images in one: glTF leaves R of metallic-roughness textures unused, and occlusion is in R.
 
 use crate::scene::{Image, Pixels};
-use rayon::prelude::*;
+use crate::threads::*;
 use std::sync::Arc;
 
 /// `image` with R of `other`, which has its layout. Channels are averaged and filtered each by itself, so that no value

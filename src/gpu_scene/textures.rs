@@ -1,12 +1,13 @@
 //! Images and samplers of materials, each made once.
 
+use super::UploadError;
 use super::mips::{self, Role};
 use super::packing::with_red_of;
 use crate::frame::Drawables;
 use crate::gpu::{Staging, formats};
 use crate::scene::{AlphaMode, Image, Material, Pixels, Sampler, Scene, Texture, TextureSlot, Wrap};
 use crate::shader::{MaterialFeatures, SceneFeatures};
-use rayon::prelude::*;
+use crate::threads::*;
 use std::collections::{BTreeSet, HashMap};
 
 /// What tells a texture from others.
@@ -29,10 +30,14 @@ impl TextureKey {
     }
 }
 
+/// Textures of a host, by the images of the scene that they stand for.
+pub type HostTextures = HashMap<usize, wgpu::TextureView>;
+
 /// The levels of all textures that a scene draws with, made on all cores. They share the texels of the scene's images.
 #[derive(Debug)]
 pub struct TextureLevels {
     levels: HashMap<TextureKey, Vec<mips::Level>>,
+    of_host: HostTextures,
 }
 
 impl TextureLevels {
@@ -45,7 +50,13 @@ impl TextureLevels {
             .flat_map(|drawable| textures_of(scene, &scene.materials[drawable.material], &drawable.material_features))
             .collect();
         let keys: Vec<TextureKey> = keys.into_iter().collect();
-        Self { levels: keys.par_iter().map(|&key| (key, key.levels(scene, max_side))).collect() }
+        let levels = keys.par_iter().map(|&key| (key, key.levels(scene, max_side))).collect();
+        Self { levels, of_host: HostTextures::new() }
+    }
+
+    /// With the textures that are [`Pixels::OfHost`].
+    pub fn with_host_textures(self, of_host: HostTextures) -> Self {
+        Self { of_host, ..self }
     }
 }
 
@@ -77,7 +88,8 @@ fn role(slot: TextureSlot, material: &Material) -> Role {
 /// Textures and samplers by what tells them apart.
 #[derive(Debug)]
 pub(super) struct TextureCache {
-    levels: TextureLevels,
+    levels: HashMap<TextureKey, Vec<mips::Level>>,
+    pub(super) of_host: HostTextures,
     views: HashMap<TextureKey, wgpu::TextureView>,
     samplers: HashMap<Sampler, wgpu::Sampler>,
     pub(super) bytes: u64,
@@ -86,42 +98,62 @@ pub(super) struct TextureCache {
 
 impl TextureCache {
     pub(super) fn new(levels: TextureLevels) -> Self {
-        Self { levels, views: HashMap::new(), samplers: HashMap::new(), bytes: 0, warnings: Vec::new() }
+        let TextureLevels { levels, of_host } = levels;
+        Self { levels, of_host, views: HashMap::new(), samplers: HashMap::new(), bytes: 0, warnings: Vec::new() }
     }
 
     /// Lets go of levels that nothing has used.
     pub(super) fn forget_levels(&mut self) {
-        self.levels.levels.clear();
+        self.levels.clear();
     }
 
     /// The image `index` of the scene in one role, uploaded at its first use.
     pub(super) fn view(
         &mut self,
-        device: &wgpu::Device,
         staging: &mut Staging<'_>,
         scene: &Scene,
         key: TextureKey,
-    ) -> wgpu::TextureView {
-        if let Some(view) = self.views.get(&key) {
-            return view.clone();
-        }
+    ) -> Result<wgpu::TextureView, UploadError> {
         let image = &scene.images[key.image];
-        let max_side = device.limits().max_texture_dimension_2d;
+        if matches!(image.pixels, Pixels::OfHost) {
+            return self.of_host(staging.device, key);
+        }
+        if let Some(view) = self.views.get(&key) {
+            return Ok(view.clone());
+        }
+        let max_side = staging.device.limits().max_texture_dimension_2d;
         if image.width.max(image.height) > max_side {
             let (Image { width, height, .. }, TextureKey { image, .. }) = (image, key);
             let message = format!("image {image} is {width} x {height}; this device draws it at {max_side} at most");
             self.warnings.push(message);
         }
-        let levels = self.levels.levels.remove(&key);
+        let levels = self.levels.remove(&key);
         let levels = levels.unwrap_or_else(|| key.levels(scene, max_side));
-        let texture = upload(device, staging, image, key.role, levels);
+        let texture = upload(staging, image, key.role, levels);
         self.bytes += (0..texture.mip_level_count())
             .map(|level| u64::from((texture.width() >> level).max(1)) * u64::from((texture.height() >> level).max(1)))
             .sum::<u64>()
             * u64::from(texture.format().block_copy_size(None).unwrap_or(0));
         let view = texture.create_view(&Default::default());
         self.views.insert(key, view.clone());
-        view
+        Ok(view)
+    }
+
+    fn of_host(
+        &self,
+        device: &wgpu::Device,
+        TextureKey { image, role, .. }: TextureKey,
+    ) -> Result<wgpu::TextureView, UploadError> {
+        if role == Role::Normal {
+            // Ours are moved by half a step, see `formats::NORMAL_TEXTURE`.
+            return Err(UploadError::HostTexture { image, what: "a normal map" });
+        }
+        let view = self.of_host.get(&image).cloned().ok_or(UploadError::NoHostTexture { image })?;
+        let sampled = view.texture().format().sample_type(None, Some(device.features()));
+        if sampled != Some(wgpu::TextureSampleType::Float { filterable: true }) {
+            return Err(UploadError::HostTexture { image, what: "a texture that this device filters" });
+        }
+        Ok(view)
     }
 
     pub(super) fn sampler(&mut self, device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
@@ -154,20 +186,14 @@ fn descriptor(sampler: Sampler) -> wgpu::SamplerDescriptor<'static> {
 }
 
 /// Uploads the levels, each of which is let go when it is staged.
-fn upload(
-    device: &wgpu::Device,
-    staging: &mut Staging<'_>,
-    image: &Image,
-    role: Role,
-    levels: Vec<mips::Level>,
-) -> wgpu::Texture {
+fn upload(staging: &mut Staging<'_>, image: &Image, role: Role, levels: Vec<mips::Level>) -> wgpu::Texture {
     let format = match image.pixels {
         Pixels::Rgba16(_) => formats::DEEP_TEXTURE,
         Pixels::Rgba8(_) if role == Role::Normal => formats::NORMAL_TEXTURE,
         Pixels::Rgba8(_) if role.is_srgb() => formats::COLOR_TEXTURE,
-        Pixels::Rgba8(_) => formats::DATA_TEXTURE,
+        Pixels::Rgba8(_) | Pixels::OfHost => formats::DATA_TEXTURE,
     };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
+    let texture = staging.device.create_texture(&wgpu::TextureDescriptor {
         label: image.name.as_deref(),
         size: wgpu::Extent3d { width: levels[0].width, height: levels[0].height, depth_or_array_layers: 1 },
         mip_level_count: levels.len() as u32,

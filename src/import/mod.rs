@@ -43,13 +43,13 @@ pub use picture::{picture_from_path, picture_from_slice};
 
 use crate::progress::{Progress, Silent};
 use crate::scene::{Material, Mesh, Node, Primitive, Scene, TextureSlot};
+use crate::threads::*;
 use accessor::Accessors;
 use buffers::Buffers;
 use document::Document;
 use error::{Fault, Notes};
 use gltf::json::Root;
 use limits::Budget;
-use rayon::prelude::*;
 use resources::Resources;
 use std::fs::File;
 use std::io::Read;

@@ -75,6 +75,7 @@ fn decode_png(bytes: &[u8]) -> Result<Picture, Fault> {
                 texel([r, g, b], a)
             })
             .collect(),
+        Pixels::OfHost => Vec::new(),
     };
     Ok(Picture { width, height, encoding: Encoding::Srgb, texels })
 }

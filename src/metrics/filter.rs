@@ -1,6 +1,6 @@
 //! Separable filters over planes of numbers.
 
-use rayon::prelude::*;
+use crate::threads::*;
 
 /// One number a pixel, row by row from the top left.
 #[derive(Debug, Clone)]

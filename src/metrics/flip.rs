@@ -15,10 +15,10 @@ use super::map::ErrorMap;
 use super::pair::Pair;
 use crate::math::color::linear_from_srgb;
 use crate::scene::{Encoding, Picture};
+use crate::threads::*;
 use color::{ColorSpaces, hunt_adjusted, hyab};
 use glam::DVec3;
 use kernels::{Contrast, Features};
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Pixels per degree of the viewer's field: a display 3840 pixels and 0.7 m wide, seen from 0.7 m.

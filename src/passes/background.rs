@@ -2,7 +2,7 @@
 
 use crate::gpu::KeptUniform;
 use crate::gpu::bindings::{FRAME_ATLAS, FRAME_ENVIRONMENT, FRAME_SAMPLER, background_layout};
-use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, PassError, fullscreen_pipeline};
 use crate::gpu_scene::entry;
 use crate::shader::types::BackgroundUniform;
 use crate::shader::{
@@ -74,7 +74,7 @@ impl BackgroundPipeline {
         target: BackgroundTarget,
         source: BackgroundSource,
         (uniform, kept): (&BackgroundUniform, &mut KeptUniform<BackgroundSource>),
-    ) -> Result<BackgroundPass, ShaderError> {
+    ) -> Result<BackgroundPass, PassError> {
         let pipeline = self.pipeline(device, sources, target)?;
         let bind = |uniform: &wgpu::Buffer, source: &BackgroundSource| {
             use wgpu::BindingResource::{Sampler, TextureView};
@@ -93,7 +93,7 @@ impl BackgroundPipeline {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
         };
         let contents = bytemuck::bytes_of(uniform);
-        let group = kept.group((device, queue), "background", contents, source, bind);
+        let group = kept.group((device, queue), "background", contents, source, bind)?;
         let instances = match (target.under, target.depth.reversed) {
             (true, _) => 0..2,
             (false, true) => 0..1,

@@ -7,14 +7,15 @@
 mod pipelines;
 
 use crate::frame::{Draw, FramePlan, clip_from_origin, rectangle_around};
+use crate::gpu::pipeline::PassError;
+use crate::gpu::{DeviceLost, filled_buffer};
 use crate::gpu_scene::{GpuScene, PulledGeometry, entry};
 use crate::scene::View;
 use crate::shader::types::PulledDraw;
-use crate::shader::{SEEN_SAMPLES_BINDING, ShaderError, ShaderSources};
+use crate::shader::{SEEN_SAMPLES_BINDING, ShaderSources};
 use glam::UVec2;
 pub use pipelines::DeferredPipelines;
 use pipelines::ShadingTarget;
-use wgpu::util::DeviceExt;
 
 /// What a frame is drawn into by way of the visibility of its triangles.
 #[derive(Debug, Clone, Copy)]
@@ -84,13 +85,16 @@ impl DeferredPipelines {
         (plan, view): (&FramePlan, &View),
         target: &DeferredTarget<'_>,
         kept: &mut Option<DeferredGroups>,
-    ) -> Result<DeferredPass, ShaderError> {
+    ) -> Result<DeferredPass, PassError> {
         let DeferredTarget { format, samples, coverage, .. } = *target;
         let into = ShadingTarget { format, samples, is_filled: coverage > 0.0 };
         if !kept.as_ref().is_some_and(|groups| groups.fit(scene, target)) {
             *kept = None;
         }
-        let groups = kept.get_or_insert_with(|| self.groups(device, scene, geometry, target));
+        let groups = match kept {
+            Some(groups) => groups,
+            None => kept.insert(self.groups(device, scene, geometry, target)?),
+        };
         let clip = clip_from_origin(view, scene.drawables.origin_in_world);
         let mut draws = Vec::with_capacity(plan.opaque.len());
         for draw in &plan.opaque {
@@ -115,7 +119,7 @@ impl DeferredPipelines {
         scene: &GpuScene,
         geometry: &PulledGeometry,
         target: &DeferredTarget<'_>,
-    ) -> DeferredGroups {
+    ) -> Result<DeferredGroups, DeviceLost> {
         let layouts = self.layouts(device, target.samples);
         let [vertices, triangles] =
             [&geometry.vertices, &geometry.triangles].map(|texture| texture.create_view(&Default::default()));
@@ -124,26 +128,24 @@ impl DeferredPipelines {
             device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries })
         };
         let of_draw = |drawable: usize| {
-            let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("pulled draw"),
-                contents: bytemuck::bytes_of(&pulled_draw(scene, geometry, drawable, target.size_px)),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
+            let contents = pulled_draw(scene, geometry, drawable, target.size_px);
+            let usage = wgpu::BufferUsages::UNIFORM;
+            let uniform = filled_buffer(device, "pulled draw", bytemuck::bytes_of(&contents), usage)?;
             let entries = [
                 entry(0, uniform.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(&vertices)),
                 entry(2, wgpu::BindingResource::TextureView(&triangles)),
                 seen.clone(),
             ];
-            [group("visibility", &layouts.visibility, &entries[..1]), group("deferred", &layouts.pulled, &entries)]
+            Ok([group("visibility", &layouts.visibility, &entries[..1]), group("deferred", &layouts.pulled, &entries)])
         };
-        DeferredGroups {
+        Ok(DeferredGroups {
             scene: scene.instances.clone(),
             visibility: target.visibility.clone(),
             size_px: target.size_px,
             covered: group("covered", &layouts.covered, std::slice::from_ref(&seen)),
-            draws: (0..scene.draws.len()).map(of_draw).collect(),
-        }
+            draws: (0..scene.draws.len()).map(of_draw).collect::<Result<_, DeviceLost>>()?,
+        })
     }
 }
 

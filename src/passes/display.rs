@@ -2,10 +2,10 @@
 
 use crate::gpu::KeptUniform;
 use crate::gpu::bindings::display_layout;
-use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, PassError, fullscreen_pipeline};
 use crate::gpu_scene::entry;
 use crate::shader::types::DisplayUniform;
-use crate::shader::{Composed, DisplayFeatures, ShaderError, ShaderSources, create_module, display_module};
+use crate::shader::{Composed, DisplayFeatures, ShaderSources, create_module, display_module};
 use std::collections::HashMap;
 
 /// Display pipelines by features and target format.
@@ -41,7 +41,7 @@ impl DisplayPipelines {
         format: wgpu::TextureFormat,
         radiance: &wgpu::TextureView,
         (uniform, kept): (&DisplayUniform, &mut KeptUniform<wgpu::TextureView>),
-    ) -> Result<DisplayPass, ShaderError> {
+    ) -> Result<DisplayPass, PassError> {
         let pipeline = match self.pipelines.get(&(features, format)) {
             Some((_, pipeline)) => pipeline.clone(),
             None => {
@@ -65,7 +65,7 @@ impl DisplayPipelines {
             })
         };
         let contents = bytemuck::bytes_of(uniform);
-        let group = kept.group((device, queue), "display", contents, radiance.clone(), bind);
+        let group = kept.group((device, queue), "display", contents, radiance.clone(), bind)?;
         Ok(DisplayPass { group, pipeline })
     }
 }

@@ -1,8 +1,8 @@
 //! Finished pictures to a window: display values are copied as they are.
 
-use crate::gpu::KeptUniform;
 use crate::gpu::bindings::present_layout;
 use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
+use crate::gpu::{DeviceLost, KeptUniform};
 use crate::gpu_scene::entry;
 use crate::shader::types::PresentUniform;
 use crate::shader::{ShaderError, ShaderSources, create_module, present_module};
@@ -43,11 +43,14 @@ impl PresentPass {
     }
 
     /// Writes what the pass reads. Once a submission.
+    ///
+    /// # Errors
+    /// Where the device is lost.
     pub fn prepare(
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         shown: &Presented<'_>,
-    ) -> wgpu::BindGroup {
+    ) -> Result<wgpu::BindGroup, DeviceLost> {
         let [r, g, b] = shown.behind;
         let uniform =
             PresentUniform { behind: [r, g, b, 1.0], split_px: shown.split_px, line_px: LINE_PX, ..Default::default() };

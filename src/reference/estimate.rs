@@ -4,8 +4,8 @@ use super::render::{Samples, Tracer};
 use super::sampling::PixelSampler;
 use crate::progress::{Progress, Silent};
 use crate::scene::{RadianceImage, Scene, View};
+use crate::threads::*;
 use glam::{DVec2, DVec4, UVec2, Vec4};
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 

@@ -53,6 +53,7 @@ impl<'a> Textures<'a> {
                 let color = |i: usize| if srgb { linear_from_srgb(value(i)) } else { value(i) };
                 DVec4::new(color(0), color(1), color(2), value(3))
             }
+            Pixels::OfHost => DVec4::ONE,
         }
     }
 }

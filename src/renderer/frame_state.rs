@@ -3,7 +3,7 @@
 use super::RadianceTarget;
 use super::paint::Painting;
 use crate::frame::{Culling, FramePlan, PlanOptions, Planner};
-use crate::gpu::{Identity, KeptUniform};
+use crate::gpu::{DeviceLost, Identity, KeptUniform, write_buffer};
 use crate::gpu_scene::GpuScene;
 use crate::passes::{BackgroundSource, DeferredGroups};
 use crate::scene::View;
@@ -82,7 +82,7 @@ impl FrameState {
         scene: &GpuScene,
         view: &View,
         options: PlanOptions,
-    ) -> wgpu::Buffer {
+    ) -> Result<wgpu::Buffer, DeviceLost> {
         if self.scene.as_ref() != Some(&scene.identity) {
             self.let_go();
             self.scene = Some(scene.identity.clone());
@@ -94,8 +94,8 @@ impl FrameState {
             self.lists_made += 1;
             VisibleList::new(device, scene.drawables.placements.instances.len())
         });
-        visible.upload(queue, &self.plan.visible);
-        visible.buffer.clone()
+        visible.upload(queue, &self.plan.visible)?;
+        Ok(visible.buffer.clone())
     }
 
     /// Lets go of all that is of a scene, or of its device.
@@ -157,11 +157,12 @@ impl VisibleList {
         Self { buffer, uploaded: Vec::new() }
     }
 
-    fn upload(&mut self, queue: &wgpu::Queue, visible: &[u32]) {
+    fn upload(&mut self, queue: &wgpu::Queue, visible: &[u32]) -> Result<(), DeviceLost> {
         if self.uploaded != visible {
-            queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(visible));
+            write_buffer(queue, &self.buffer, 0, bytemuck::cast_slice(visible))?;
             self.uploaded.clear();
             self.uploaded.extend_from_slice(visible);
         }
+        Ok(())
     }
 }

@@ -8,7 +8,7 @@ use crate::gpu::Identity;
 use crate::gpu_scene::GpuScene;
 use crate::passes::BackgroundPass;
 use crate::scene::View;
-use glam::UVec2;
+use glam::{UVec2, Vec2};
 
 /// What a frame binds, kept in the [`FrameState`] from its preparation to the pass.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub(super) struct Painting {
     frame_group: wgpu::BindGroup,
     pipelines: PlanPipelines,
     panorama: Option<BackgroundPass>,
-    at_px: UVec2,
+    at_px: Vec2,
     size_px: UVec2,
 }
 
@@ -48,12 +48,25 @@ impl Renderer {
         pass: &PassFormat,
         state: &'a mut FrameState,
     ) -> Result<Prepared<'a>, RenderError> {
+        self.prepare_at((device, queue), scene, (view, at_px.as_vec2()), pass, state)
+    }
+
+    /// The same anywhere, even beside the attachments.
+    pub(super) fn prepare_at<'a>(
+        &mut self,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        scene: &'a mut GpuScene,
+        (view, at_px): (&View, Vec2),
+        pass: &PassFormat,
+        state: &'a mut FrameState,
+    ) -> Result<Prepared<'a>, RenderError> {
         let mut pipelines = state.painting.take().map(|painting| painting.pipelines).unwrap_or_default();
+        self.check_device()?;
         check_size(device, view)?;
         let target = pass.forward_target(device, view)?;
         self.check_channel(device, scene, view, target.format)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
-        let visible = state.plan_frame((device, queue), scene, view, options);
+        let visible = state.plan_frame((device, queue), scene, view, options)?;
         let panorama = self.panorama((device, queue), scene, view, (target, false), state)?;
         let mut uniform = frame_uniform(scene, view);
         let own = clip_from_origin(view, scene.drawables.origin_in_world);
@@ -82,7 +95,7 @@ impl Prepared<'_> {
     /// another viewport, other bind groups, buffers and pipelines; its scissor rectangle is respected.
     pub fn paint(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Painting { frame_group, pipelines, panorama, at_px, size_px, .. } = self.painting;
-        let (at, size) = (at_px.as_vec2(), size_px.as_vec2());
+        let (at, size) = (at_px, size_px.as_vec2());
         pass.set_viewport(at.x, at.y, size.x, size.y, 0.0, 1.0);
         draw_plan(pass, pipelines, self.scene, frame_group, (&self.state.plan, panorama.as_ref()));
     }

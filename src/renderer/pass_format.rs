@@ -55,6 +55,9 @@ impl PassFormat {
         if matches!(view.background, Background::Color(_)) {
             return Err(RenderError::NeedsOwnPass { feature: "a background colour" });
         }
+        if view.channel.is_some() && self.output == Output::Display {
+            return Err(RenderError::Pass("a channel is numbers, and the pass is for display light".to_owned()));
+        }
         self.check_color(device)?;
         self.check_depth(device, depth)?;
         self.check_far(&view.camera)?;

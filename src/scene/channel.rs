@@ -180,6 +180,23 @@ pub enum Channel {
     /// Faults of the radiance before it is clamped: red is 1 where it is no number, green where it is infinite, blue
     /// where it is negative.
     Nan,
+    /// A whole number below 2^32 in three digits that half floats hold exactly, see [`from_digits`].
+    Digits(Number),
+}
+
+/// A whole number that is known of the nearest surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Number {
+    /// Its place in the frame's list of instances that are drawn.
+    Placement,
+    /// The bits of its depth, z / w in clip space as float32.
+    DepthBits,
+}
+
+/// The number that digits of base 2048 stand for, the least first, as [`Channel::Digits`] shows it.
+pub fn from_digits(digits: glam::Vec3) -> u32 {
+    let [low, middle, high] = digits.to_array().map(|digit| digit as u32);
+    low | middle << 11 | high << 22
 }
 
 impl Channel {

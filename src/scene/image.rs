@@ -7,6 +7,8 @@ use std::sync::Arc;
 pub enum Pixels {
     Rgba8(Arc<Vec<u8>>),
     Rgba16(Arc<Vec<u16>>),
+    /// None here: the texture is a host's, on its device. The reference renderer sees white.
+    OfHost,
 }
 
 /// A decoded picture. The values are as stored in the file: whether they are sRGB depends on the slot that uses them.
@@ -19,9 +21,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// Whether the other has as many texels a row and a column, of the same kind.
+    /// Whether the other has as many texels a row and a column, of the same kind, and both have them here.
     pub fn has_layout_of(&self, other: &Self) -> bool {
-        let same_kind = std::mem::discriminant(&self.pixels) == std::mem::discriminant(&other.pixels);
+        let is_here = !matches!(self.pixels, Pixels::OfHost);
+        let same_kind = is_here && std::mem::discriminant(&self.pixels) == std::mem::discriminant(&other.pixels);
         (self.width, self.height, same_kind) == (other.width, other.height, true)
     }
 
@@ -30,6 +33,7 @@ impl Image {
         self.pixels = match self.pixels {
             Pixels::Rgba8(_) => Pixels::Rgba8(Arc::default()),
             Pixels::Rgba16(_) => Pixels::Rgba16(Arc::default()),
+            Pixels::OfHost => Pixels::OfHost,
         };
     }
 }

@@ -15,18 +15,20 @@ pub mod light_field;
 mod material;
 mod mesh;
 pub mod patches;
+mod placed;
 pub mod shapes;
 mod spot_cone;
 mod view;
 
 pub use camera::{Camera, Projection};
-pub use channel::{Channel, Component, Components, Input, LightSource};
+pub use channel::{Channel, Component, Components, Input, LightSource, Number, from_digits};
 pub use disney::Disney;
 pub use environment::{Environment, EnvironmentImage, EnvironmentMaps, MAX_SUNS, SpecularTile, Sun};
 pub use image::{Encoding, Image, Picture, Pixels, RadianceImage, Sampler, Texture, Wrap};
 pub use light::{Light, LightInWorld, LightKind};
 pub use material::{AlphaMode, Material, MetalFresnel, TextureRef, TextureSlot, UvTransform};
 pub use mesh::{Mesh, Primitive, Topology};
+pub use placed::Placed;
 pub use spot_cone::SpotCone;
 pub use view::{Background, Geometry, Quality, Term, ToneMap, View};
 
@@ -110,49 +112,9 @@ impl Bounds {
 }
 
 impl Scene {
-    /// `world_from_node` of every node reachable from the roots, parents before children; `(node, matrix)` pairs.
-    ///
-    /// Iterative, so that a chain of a hundred thousand nodes costs memory and not stack.
-    pub fn world_transforms(&self) -> Vec<(usize, DMat4)> {
-        let mut out = Vec::with_capacity(self.nodes.len());
-        let mut pending: Vec<(usize, DMat4)> = self.roots.iter().rev().map(|&root| (root, DMat4::IDENTITY)).collect();
-        while let Some((index, world_from_parent)) = pending.pop() {
-            let node = &self.nodes[index];
-            let world_from_node = world_from_parent * node.parent_from_node;
-            out.push((index, world_from_node));
-            pending.extend(node.children.iter().rev().map(|&child| (child, world_from_node)));
-        }
-        out
-    }
-
-    /// Every mesh instance of the scene, in depth-first order of the node tree and in the order of each node.
-    pub fn instances(&self) -> Vec<Instance> {
-        let mut instances = Vec::new();
-        for (node, world_from_node) in self.world_transforms() {
-            let Node { mesh: Some(mesh), ref node_from_objects, .. } = self.nodes[node] else { continue };
-            match node_from_objects {
-                None => instances.push(Instance { node, mesh, world_from_object: world_from_node }),
-                Some(placed) => instances.extend(placed.iter().map(|node_from_object| {
-                    let world_from_object = world_from_node * *node_from_object;
-                    Instance { node, mesh, world_from_object }
-                })),
-            }
-        }
-        instances
-    }
-
     /// The environment, unless it is as dark as none.
     pub fn lit_environment(&self) -> Option<&Environment> {
         self.environment.as_ref().filter(|environment| environment.intensity > 0.0)
-    }
-
-    /// Every light of the scene with its place and direction in the world.
-    pub fn lights_in_world(&self) -> Vec<LightInWorld> {
-        let place = |(node, world_from_node): (usize, DMat4)| {
-            let light = self.nodes[node].light?;
-            Some(self.lights[light].in_world(&world_from_node))
-        };
-        self.world_transforms().into_iter().filter_map(place).collect()
     }
 
     /// Every camera of the scene where its node puts it; scale and shear of the node have no effect.

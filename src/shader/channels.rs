@@ -1,7 +1,7 @@
 //! WGSL that shows a channel: where each input of shading is found, and the numbers that the frame's uniform asks by.
 
 use super::features::{ForwardFeatures, MaterialFeatures, Shading, VertexFeatures};
-use crate::scene::{Channel, Component, Components, Input, LightSource};
+use crate::scene::{Channel, Component, Components, Input, LightSource, Number};
 use std::fmt::Write;
 
 /// Numbers of the channels that are not inputs; those are numbered by their order.
@@ -14,6 +14,8 @@ const NAN: u32 = 105;
 const LIGHT_COUNT: u32 = 106;
 const UV_CHECKER: u32 = 107;
 const DRAWN: u32 = 108;
+const PLACEMENT: u32 = 109;
+const DEPTH_BITS: u32 = 110;
 
 /// `channel`, `channel_index` and `channel_components` of the frame's uniform.
 pub fn channel_uniform(channel: Channel) -> [u32; 3] {
@@ -36,6 +38,8 @@ pub fn channel_uniform(channel: Channel) -> [u32; 3] {
         // What is drawn where is for the pipelines to say.
         Channel::Overdraw | Channel::Wireframe => [DRAWN, 0, 0],
         Channel::Nan => [NAN, 0, 0],
+        Channel::Digits(Number::Placement) => [PLACEMENT, 0, 0],
+        Channel::Digits(Number::DepthBits) => [DEPTH_BITS, 0, 0],
     }
 }
 
@@ -52,6 +56,8 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
         ("LIGHT_COUNT", LIGHT_COUNT),
         ("UV_CHECKER", UV_CHECKER),
         ("DRAWN", DRAWN),
+        ("PLACEMENT", PLACEMENT),
+        ("DEPTH_BITS", DEPTH_BITS),
     ];
     // Writing to a String cannot fail.
     for (name, number) in numbers {
@@ -70,9 +76,12 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
     text.push_str(
         "        case CHANNEL_DRAWN: {\n            return vec3f(1.0);\n        }\n        \
          case CHANNEL_NAN: {\n            return faults(shade(surface, v.position_in_world));\n        }\n        \
+         case CHANNEL_PLACEMENT: {\n            return digits(placement(v));\n        }\n        \
+         case CHANNEL_DEPTH_BITS: {\n            return digits(depth_bits(v.position_in_world));\n        }\n        \
          default: {\n            return radiance_channel(surface, v.position_in_world);\n        }\n    }\n}\n\n",
     );
     text.push_str(FAULTS);
+    text.push_str(DIGITS);
     text
 }
 
@@ -96,6 +105,18 @@ fn faults(radiance: vec3f) -> vec3f {
     let no_number = magnitude > vec3u(0x7f800000u);
     let negative = (bits > vec3u(0x80000000u)) & !no_number;
     return select(vec3f(0.0), vec3f(1.0), vec3<bool>(any(no_number), any(infinite), any(negative)));
+}
+";
+
+/// Whole numbers below 2048 are half floats.
+const DIGITS: &str = "
+fn digits(number: u32) -> vec3f {
+    return vec3f(vec3u(number, number >> 11u, number >> 22u) & vec3u(2047u));
+}
+
+fn depth_bits(position_in_world: vec3f) -> u32 {
+    let clip = frame.clip_from_world * vec4f(position_in_world, 1.0);
+    return bitcast<u32>(clip.z / clip.w);
 }
 ";
 
@@ -172,6 +193,7 @@ mod tests {
             .into_iter()
             .chain(radiance)
             .chain([Channel::LightCount, Channel::UvChecker, Channel::Overdraw, Channel::Nan])
+            .chain([Number::Placement, Number::DepthBits].map(Channel::Digits))
             .map(channel_uniform)
             .collect();
         assert_eq!(all.iter().map(|uniform| uniform[0]).collect::<BTreeSet<_>>().len(), all.len());

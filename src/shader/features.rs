@@ -1,8 +1,8 @@
 //! What a draw uses: the key of its shader. Numbers (light counts, sizes) are data and not part of it, but that of suns.
 
 use crate::scene::{
-    AlphaMode, Geometry, MAX_SUNS, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, TextureRef,
-    TextureSlot, Topology, UvTransform,
+    AlphaMode, Geometry, LightInWorld, MAX_SUNS, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term,
+    TextureRef, TextureSlot, Topology, UvTransform,
 };
 use std::fmt;
 
@@ -80,7 +80,11 @@ impl LightList {
 impl SceneFeatures {
     /// What `scene` says; `suns` is for its environment's maps to tell.
     pub fn of(scene: &Scene) -> Self {
-        let lights = scene.lights_in_world();
+        Self::lit_by(scene, &scene.lights_in_world())
+    }
+
+    /// The same, with the scene's lights where they are in the world.
+    pub fn lit_by(scene: &Scene, lights: &[LightInWorld]) -> Self {
         let lit = || lights.iter().filter(|light| light.intensity != glam::DVec3::ZERO);
         let with_range = lit().filter(|light| light.finite_range_m().is_some()).count();
         Self {

@@ -37,8 +37,9 @@ pub fn attributes(vertex: &VertexFeatures) -> Vec<Attribute> {
     attributes
 }
 
-/// The `<interface>` slot: `VertexIn`, `VertexOut`, `vertex_out` and `vertex_color`.
-pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
+/// The `<interface>` slot: `VertexIn`, `VertexOut`, `vertex_out` and `vertex_color`; and `placement`, which of the
+/// instances that are drawn a `numbered` vertex is of.
+pub(super) fn vertex_interface(vertex: &VertexFeatures, numbered: bool) -> String {
     let fields = |first: &str| {
         let attributes = attributes(vertex).into_iter().enumerate();
         attributes.fold(String::new(), |mut text, (location, attribute)| {
@@ -49,16 +50,24 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     };
     let mut text = format!(
         "struct VertexIn {{\n    @builtin(instance_index) instance: u32,\n{}}}\n\n\
-         struct VertexOut {{\n    @builtin(position) @invariant position_in_clip: vec4f,\n{}}}\n\n",
+         struct VertexOut {{\n    @builtin(position) @invariant position_in_clip: vec4f,\n{}{}}}\n\n",
         fields("position"),
-        fields("position_in_world")
+        fields("position_in_world"),
+        if numbered {
+            format!("    @location({}) @interpolate(flat) placement: u32,\n", attributes(vertex).len())
+        } else {
+            String::new()
+        }
     );
-    text.push_str(&vertex_out(vertex));
+    text.push_str(&vertex_out(vertex, numbered));
     text.push_str(&vertex_color(vertex));
+    if numbered {
+        text.push_str("\nfn placement(v: VertexOut) -> u32 {\n    return v.placement;\n}\n");
+    }
     text
 }
 
-fn vertex_out(vertex: &VertexFeatures) -> String {
+fn vertex_out(vertex: &VertexFeatures, numbered: bool) -> String {
     let mut text = String::from(
         "fn vertex_out(in: VertexIn) -> VertexOut {\n\
          \x20   let instance = instances[visible_instances[in.instance]];\n\
@@ -75,6 +84,9 @@ fn vertex_out(vertex: &VertexFeatures) -> String {
             name => format!("in.{name}"),
         };
         let _ = writeln!(text, "    out.{name} = {value};");
+    }
+    if numbered {
+        text.push_str("    out.placement = in.instance;\n");
     }
     text.push_str("    return out;\n}\n\n");
     text

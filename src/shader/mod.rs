@@ -20,6 +20,7 @@ pub use features::{
     Alpha, FEW_LIGHTS, ForwardFeatures, FresnelFeature, LightList, MaterialFeatures, SceneFeatures, Shading,
     TextureUse, VertexFeatures, material_samplers,
 };
+#[cfg(feature = "cli")]
 pub(crate) use interface::texel_function;
 pub use interface::{
     Attribute, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, attributes, disney_binding, material_texture_binding,

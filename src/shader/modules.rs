@@ -54,7 +54,7 @@ pub fn deferred_module(
     samples: u32,
 ) -> Result<Composed, ShaderError> {
     let mut slots = forward_slots(features);
-    slots.insert("interface", Slot::Text(pulled::vertex_interface(&features.vertex)));
+    slots.insert("interface", Slot::Text(pulled::vertex_interface(&features.vertex, features.channel)));
     slots.insert("material", Slot::Text(interface::material_interface(&features.material, Gradients::Explicit)));
     slots.insert("seen", Slot::Text(pulled::seen(samples, 2)));
     compose(sources, "pass/deferred.wgsl", &slots)
@@ -83,7 +83,7 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
     let normal_mapped = material.texture(TextureSlot::Normal).is_some();
     Slots::from([
         ("types", Slot::Text(types::wgsl())),
-        ("interface", Slot::Text(interface::vertex_interface(vertex))),
+        ("interface", Slot::Text(interface::vertex_interface(vertex, *channel))),
         ("material", Slot::Text(interface::material_interface(material, Gradients::Implicit))),
         (
             "normal",

@@ -16,8 +16,9 @@ pub fn texels_per_vertex(vertex: &VertexFeatures) -> u32 {
     attributes(vertex).iter().map(components).sum::<u32>().div_ceil(4)
 }
 
-/// The `<interface>` slot: as that of the forward pass, and `pulled_vertex` and `interpolated`.
-pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
+/// The `<interface>` slot: as that of the forward pass, and `pulled_vertex` and `interpolated`. Numbers are never asked for:
+/// no frame that shows a channel is deferred.
+pub(super) fn vertex_interface(vertex: &VertexFeatures, numbered: bool) -> String {
     let attributes = attributes(vertex);
     let mut text = format!("const PULLED_ROW_TEXELS: u32 = {PULLED_ROW_TEXELS}u;\n\n");
     text.push_str("struct VertexOut {\n    position_in_clip: vec4f,\n    position_in_world: vec3f,\n");
@@ -31,6 +32,9 @@ pub(super) fn vertex_interface(vertex: &VertexFeatures) -> String {
     text.push_str(&vertex_color(vertex));
     text.push_str(&pulled_vertex(&attributes, texels_per_vertex(vertex)));
     text.push_str(&interpolated(&attributes));
+    if numbered {
+        text.push_str("\nfn placement(v: VertexOut) -> u32 {\n    return 0u;\n}\n");
+    }
     text
 }
 

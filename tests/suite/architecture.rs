@@ -16,23 +16,25 @@ const LAYERS: &[(&str, &[&str])] = &[
     // Plain data.
     ("math", &[]),
     ("progress", &[]),
+    // Loops, on as many threads as the crate may have.
+    ("threads", &[]),
     // Quantities of light, with units in their types.
     ("radiometry", &["math"]),
     ("scene", &["math", "radiometry"]),
-    ("import", &["math", "progress", "scene"]),
+    ("import", &["math", "progress", "scene", "threads"]),
     // The float64 truth, and what is made from it. The renderer reads the baked tables and never the truth.
-    ("reference", &["math", "progress", "scene"]),
-    ("bake", &["math", "progress", "reference", "scene"]),
+    ("reference", &["math", "progress", "scene", "threads"]),
+    ("bake", &["math", "progress", "reference", "scene", "threads"]),
     // What was baked, in files: the only part below the program that writes any.
     ("cache", &["bake", "progress", "scene"]),
     // How far two pictures are apart.
-    ("metrics", &["math", "scene"]),
+    ("metrics", &["math", "scene", "threads"]),
     // What will be drawn, on the CPU.
     ("shader", &["math", "scene"]),
     ("frame", &["math", "scene", "shader"]),
     // The device and what is on it.
     ("gpu", &["math", "shader"]),
-    ("gpu_scene", &["frame", "gpu", "math", "scene", "shader"]),
+    ("gpu_scene", &["frame", "gpu", "math", "scene", "shader", "threads"]),
     ("passes", &["frame", "gpu", "gpu_scene", "math", "scene", "shader"]),
     ("renderer", &["bake", "frame", "gpu", "gpu_scene", "math", "passes", "scene", "shader"]),
     ("capture", &["frame", "gpu", "gpu_scene", "math", "passes", "renderer", "scene"]),

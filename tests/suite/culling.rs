@@ -1,6 +1,6 @@
 //! What is not drawn would not have been seen, and what has not changed is not drawn again.
 
-use crate::support::{add_light, front_view, gpu, import, sphere_scene};
+use crate::support::{add_light, front_view, gpu, import, sphere_scene, submission_number};
 use glam::{DMat4, DQuat, DVec3, UVec2, Vec3, Vec4};
 use specula::bake::environment::{BakeOptions, bake};
 use specula::capture::{CaptureOptions, CaptureTarget, CapturedFrame, Wanted, redraw, submit};
@@ -221,12 +221,6 @@ fn showcase(gpu: &Gpu) -> (Renderer, GpuScene, View) {
     let renderer = Renderer::new(&gpu.device, &gpu.queue);
     let uploaded = renderer.upload(&gpu.device, &gpu.queue, &scene, maps.as_ref()).unwrap();
     (renderer, uploaded, view)
-}
-
-/// The number that the queue gives to a submission of nothing: each submission counts it up.
-fn submission_number(gpu: &Gpu) -> u64 {
-    let index = format!("{:?}", gpu.queue.submit([]));
-    index.chars().filter(char::is_ascii_digit).collect::<String>().parse().unwrap()
 }
 
 #[test]

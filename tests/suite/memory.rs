@@ -3,7 +3,7 @@
 use crate::support::{add_light, gpu, sphere_scene};
 use glam::{DVec3, Vec2};
 use specula::gpu::formats::{self, Precision};
-use specula::gpu::{Gpu, Staging};
+use specula::gpu::{Gpu, Staging, Uploads};
 use specula::renderer::Renderer;
 use specula::scene::{
     Image, LightKind, Material, Pixels, Sampler, Scene, Texture, TextureRef, TextureSlot, UvTransform,
@@ -25,7 +25,7 @@ fn textures_are_staged_a_few_at_a_time() {
     let textures: Vec<wgpu::Texture> = (0..levels).map(|_| texture(&gpu)).collect();
     let Some(before) = allocated_bytes(&gpu) else { return println!("this backend does not count memory") };
     let texels = vec![7; BYTES as usize];
-    let mut staging = Staging::new(&gpu.device, &gpu.queue);
+    let mut staging = Staging::new(&gpu.device, &gpu.queue, Uploads::Bounded);
     let mut most = 0;
     for texture in &textures {
         staging.write(texture, 0, &texels);
@@ -42,7 +42,7 @@ fn textures_are_staged_a_few_at_a_time() {
 #[test]
 fn an_upload_leaves_nothing_but_the_scene() {
     let gpu = gpu(Precision::Half);
-    let renderer = Renderer::new(&gpu.device, &gpu.queue);
+    let renderer = Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded);
     let scene = five_textures();
     gpu.queue.submit([]);
     gpu.wait().unwrap();
@@ -69,7 +69,7 @@ fn texture(gpu: &Gpu) -> wgpu::Texture {
 }
 
 /// A lit sphere with a texture of its own in each of five slots.
-fn five_textures() -> Scene {
+pub(crate) fn five_textures() -> Scene {
     use TextureSlot::{BaseColor, Emissive, MetallicRoughness, Normal, Occlusion};
     let mut material = Material { emissive_nits: glam::Vec3::ONE, ..Default::default() };
     for (texture, slot) in [BaseColor, Emissive, MetallicRoughness, Normal, Occlusion].into_iter().enumerate() {

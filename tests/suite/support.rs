@@ -151,3 +151,9 @@ pub(crate) fn draw_with(
     let frame = submit(gpu, &mut renderer, &mut uploaded, view, &target, wanted).unwrap();
     frame.wait(gpu).unwrap()
 }
+
+/// The number that the queue gives to a submission of nothing: each submission counts it up.
+pub(crate) fn submission_number(gpu: &Gpu) -> u64 {
+    let index = format!("{:?}", gpu.queue.submit([]));
+    index.chars().filter(char::is_ascii_digit).collect::<String>().parse().unwrap()
+}

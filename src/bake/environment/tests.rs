@@ -2,8 +2,8 @@ use super::*;
 use crate::bake::test_support::sample_panorama;
 use crate::math::spaces::{direction_from_equirect, orthonormal_basis};
 use crate::progress::Silent;
+use crate::threads::*;
 use glam::{DVec2, Vec3};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// The filter is tested with the sun in the picture: it is the hardest part.

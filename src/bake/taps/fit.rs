@@ -11,7 +11,7 @@ use crate::math::descent::descend;
 use crate::math::simplex::minimize;
 use crate::reference::sampling::PixelSampler;
 use crate::scene::EnvironmentMaps;
-use rayon::prelude::*;
+use crate::threads::*;
 
 /// Rows and columns of the tables on the way, and the steps of the search in each.
 const GRIDS: [(usize, usize, usize); 5] =

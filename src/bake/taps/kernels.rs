@@ -2,7 +2,7 @@
 
 use crate::bake::lobe::legendre_coefficients;
 use crate::scene::EnvironmentMaps;
-use rayon::prelude::*;
+use crate::threads::*;
 use std::f64::consts::PI;
 
 /// Levels of the specular maps but the mirror image: round kernels that shading can look through.

@@ -7,7 +7,7 @@ use crate::cli::clock::{FrameTimes, Timestamps, time_frame};
 use crate::cli::environment::{CacheArgs, bake_with};
 use crate::cli::error::CliError;
 use crate::cli::measure::FloorOf;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
 use crate::renderer::{FrameStats, PathChoice, Renderer};
@@ -53,7 +53,7 @@ pub(in crate::cli) struct Shot {
 
 impl<'a> Stage<'a> {
     pub(in crate::cli) fn new(gpu: &'a Gpu, scene: &'a Scene, cache: &'a CacheArgs) -> Self {
-        let renderer = Renderer::new(&gpu.device, &gpu.queue);
+        let renderer = Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded);
         Self {
             gpu,
             scene,

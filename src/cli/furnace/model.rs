@@ -44,6 +44,7 @@ fn extent(scene: &Scene, material: &Material, slot: TextureSlot) -> [DVec4; 2] {
     let extent = match &image.pixels {
         Pixels::Rgba8(data) => channels_extent(data).map(|extent| extent / 255.0),
         Pixels::Rgba16(data) => channels_extent(data).map(|extent| extent / 65535.0),
+        Pixels::OfHost => [DVec4::ZERO, DVec4::ONE],
     };
     extent.map(decode)
 }

@@ -3,7 +3,7 @@
 use crate::capture::{CaptureError, CaptureTarget, CapturedPixel, PIXEL_OPTIONS, capture_pixel};
 use crate::cli::error::CliError;
 use crate::frame::PrimitivePlace;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::GpuScene;
 use crate::renderer::Renderer;
 use crate::scene::{Channel, EnvironmentMaps, Input, Scene, Sun, View};
@@ -30,7 +30,7 @@ impl<'a> Shaders<'a> {
         pixel: UVec2,
         maps: Option<EnvironmentMaps>,
     ) -> Result<Self, CliError> {
-        let renderer = Renderer::new(&gpu.device, &gpu.queue);
+        let renderer = Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded);
         let uploaded = renderer.upload(&gpu.device, &gpu.queue, scene, maps.as_ref()).map_err(CaptureError::from)?;
         let target = CaptureTarget::new(gpu, view, PIXEL_OPTIONS)?;
         let suns = maps.map_or_else(Vec::new, |maps| maps.suns);

@@ -2,8 +2,8 @@
 
 use super::texels::{Encoder, Linear};
 use super::{Bytes, Level};
+use crate::threads::*;
 use glam::Vec4;
-use rayon::prelude::*;
 
 /// The source texels that one destination texel covers along an axis, with their weights (which sum to 1).
 fn coverage(source: u32, target: u32, index: u32) -> impl Iterator<Item = (usize, f32)> + Clone {

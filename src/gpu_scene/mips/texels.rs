@@ -2,8 +2,8 @@
 
 use super::Role;
 use crate::math::color::{SrgbCodes, linear_from_srgb};
+use crate::threads::*;
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
 
 /// Texels by their number, row by row. A trait and not a closure, so that they are inlined in the development profile too.
 pub(super) trait Linear: Sync {

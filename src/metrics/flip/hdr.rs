@@ -4,8 +4,8 @@ use super::{Flip, PIXELS_PER_DEGREE};
 use crate::math::color::luminance;
 use crate::metrics::{ErrorMap, Pair};
 use crate::scene::Picture;
+use crate::threads::*;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// The curve that stands for a display's tone map, `(a x^2 + b x) / (d x^2 + e x + f)`: Narkowicz 2015, "ACES Filmic
 /// Tone Mapping Curve", with the scene scaled by 0.6: the default of the HDR paper.

@@ -2,7 +2,7 @@
 
 use super::super::{ProofError, stage};
 use crate::bake::{disney, environment};
-use crate::gpu::{Gpu, Staging, bindings};
+use crate::gpu::{Gpu, Staging, Uploads, bindings};
 use crate::gpu_scene::{GpuEnvironment, SharedTextures};
 use crate::progress::Silent;
 use crate::renderer::{shared_textures, table};
@@ -99,10 +99,9 @@ impl Resources {
     pub(super) fn new(gpu: &Gpu, features: ForwardFeatures, sun_nits: f32) -> Result<Self, ProofError> {
         let sky = Environment::new(sun(sun_nits));
         let maps = environment::bake(&sky.image, &Default::default(), &Silent);
-        let environment =
-            GpuEnvironment::new(&gpu.device, &mut Staging::new(&gpu.device, &gpu.queue), &sky, &maps, None)
-                .map_err(|error| ProofError::Row { row: "fuzz".into(), reason: error.to_string() })?;
         let (device, queue) = (&gpu.device, &gpu.queue);
+        let environment = GpuEnvironment::new(&mut Staging::new(device, queue, Uploads::Queued), &sky, &maps, None)
+            .map_err(|error| ProofError::Row { row: "fuzz".into(), reason: error.to_string() })?;
         let disney_table = table(&disney::TABLE).upload(device, queue);
         Ok(Self { features, shared: shared_textures(device, queue), disney_table, environment })
     }

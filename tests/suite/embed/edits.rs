@@ -61,7 +61,7 @@ impl Stage {
     }
 
     /// Draws what the scene is now as one that was never anything else.
-    fn draw_anew(&mut self, scene: &LiveScene) -> Vec<u8> {
+    pub(super) fn draw_anew(&mut self, scene: &LiveScene) -> Vec<u8> {
         let mut anew = LiveScene::new();
         anew.insert(scene.scene()).unwrap();
         anew.set_environment(scene.scene().environment.clone().map(with_maps));
@@ -171,7 +171,7 @@ fn an_environment_is_turned_and_dimmed_in_place() {
 }
 
 /// A small sphere at x with a texture of its own.
-fn textured(x: f64, color: [u8; 4]) -> Scene {
+pub(super) fn textured(x: f64, color: [u8; 4]) -> Scene {
     let mut scene = crate::support::sphere_scene(Material { metallic: 0.0, ..Default::default() });
     scene.images = vec![Image { name: None, width: 1, height: 1, pixels: Pixels::Rgba8(Arc::new(color.to_vec())) }];
     scene.textures = vec![Texture { image: 0, sampler: Sampler::default() }];

@@ -5,8 +5,13 @@ use glam::UVec2;
 use specula::gpu::formats::Precision;
 use specula::scene::Scene;
 
+#[cfg(feature = "view")]
+#[path = "../../../examples/embed_egui.rs"]
+mod embed_egui;
 #[path = "../../../examples/embed_encode.rs"]
 mod embed_encode;
+#[path = "../../../examples/embed_texture.rs"]
+mod embed_texture;
 #[path = "../../../examples/minimal.rs"]
 mod minimal;
 #[path = "../../../examples/offscreen_server.rs"]
@@ -47,6 +52,53 @@ fn a_model_hides_and_is_hidden_in_a_host_s_frame() {
     let [green, green_alone] = [&with, &without].map(|picture| count(picture, 1, 0));
     println!("{green} of {green_alone} green pixels");
     assert!(green > 200 && green + 200 < green_alone, "{green} of {green_alone} pixels of the green pillar");
+}
+
+#[cfg(feature = "view")]
+#[test]
+fn egui_lays_a_model_out_among_its_widgets() {
+    use embed_egui::{Desk, SIZE_PX, Widgets};
+    let gpu = gpu(Precision::Half);
+    let model = || specula::import::model_from_path("assets/showcase.glb".as_ref(), &Default::default()).unwrap().scene;
+    let mut desk = Desk::new(&gpu, &model()).unwrap();
+    let mut picture = |turn_rad, exposure_ev| desk.picture(&gpu, &Widgets { turn_rad, exposure_ev }).unwrap();
+    let [front, turned, bright] = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(turn, exposure)| picture(turn, exposure));
+    assert!(picture(0.0, 0.0) == front, "nothing of the frames before is left");
+    let mut nothing = model();
+    nothing.nodes.iter_mut().for_each(|node| node.mesh = None);
+    let nothing =
+        Desk::new(&gpu, &nothing).unwrap().picture(&gpu, &Widgets { turn_rad: 0.0, exposure_ev: 0.0 }).unwrap();
+    // The parts that egui gives to its panel and to the model, and the middle of the window over that.
+    let differing = |a: &[u8], b: &[u8], x: std::ops::Range<u32>, y: std::ops::Range<u32>| {
+        let all = y.flat_map(|y| x.clone().map(move |x| UVec2::new(x, y)));
+        all.filter(|&at| texel(a, SIZE_PX.x, at) != texel(b, SIZE_PX.x, at)).count()
+    };
+    for (other, least) in [(&nothing, 6000), (&turned, 3000), (&bright, 6000)] {
+        let of_model = differing(&front, other, 160..480, 0..270);
+        assert!(of_model > least, "{of_model} pixels of the model are others");
+        assert_eq!(differing(&front, other, 340..440, 200..230), 0, "the window hides the model");
+    }
+    assert_eq!(differing(&front, &nothing, 0..140, 0..270), 0, "the panel is egui's alone");
+    assert_eq!(gpu.check(), Ok(()));
+}
+
+#[test]
+fn what_a_host_draws_is_on_a_screen_of_ours() {
+    let gpu = gpu(Precision::Half);
+    let mut room = embed_texture::Room::new(&gpu).unwrap();
+    let pictures = [0.0, 0.8, 0.0].map(|angle| room.picture(&gpu, angle).unwrap());
+    assert!(pictures[0] == pictures[2]);
+    assert_eq!(room.scene.uploads(), 1);
+    let size = embed_texture::SIZE_PX;
+    let all = || (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
+    let changed = |at: &UVec2| texel(&pictures[0], size.x, *at) != texel(&pictures[1], size.x, *at);
+    let changed: Vec<UVec2> = all().filter(changed).collect();
+    // The screen's part of the picture; its light is none of the room's.
+    let is_on_screen = |at: &UVec2| (125..345).contains(&at.x) && (70..200).contains(&at.y);
+    assert!(changed.len() > 1000 && changed.iter().all(is_on_screen), "{} pixels", changed.len());
+    // The host's sky: blue above, dark below.
+    let [above, below] = [UVec2::new(240, 4), UVec2::new(240, 265)].map(|at| texel(&pictures[0], size.x, at));
+    assert!(above[2] > above[0] && above[2] > below[2] + 40, "{above:?}, {below:?}");
 }
 
 #[test]

@@ -1,13 +1,22 @@
 //! Frames in other people's passes.
 
 mod api;
+mod counts;
+mod crates;
 mod edits;
+#[path = "../../../examples/embed_cost.rs"]
+mod embed_cost;
 mod examples;
 #[path = "../../../examples/host/mod.rs"]
 mod host;
+mod hosted;
 mod lifetime;
+mod lost;
 mod mixing;
 mod passes;
+mod picking;
+mod quiet;
+mod steady;
 
 use crate::support::{add_light, front_view, sphere_scene};
 use glam::{DVec3, UVec2, Vec3, Vec4};
@@ -73,7 +82,11 @@ fn view() -> View {
 }
 
 fn encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
-    gpu.device.create_command_encoder(&Default::default())
+    encoder_of(&gpu.device)
+}
+
+fn encoder_of(device: &wgpu::Device) -> wgpu::CommandEncoder {
+    device.create_command_encoder(&Default::default())
 }
 
 /// How many texels of two pictures differ by more than `by` in any byte.

@@ -202,6 +202,56 @@ fn preparing_a_frame_once_more_allocates_nothing() {
 }
 
 #[test]
+fn channels_are_drawn_side_by_side_in_a_host_s_pass() {
+    use specula::scene::{Channel, Input};
+    let gpu = gpu(Precision::Half);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue);
+    let mut scene = upload(&gpu, &renderer, &in_studio());
+    let channels = [Input::Normal, Input::BaseColor, Input::Depth, Input::PerceptualRoughness].map(Channel::Input);
+    let pass = PassFormat::own(1);
+    let views = channels.map(|channel| View { channel: Some(channel), ..view() });
+    let attachments = Attachments::new(&gpu.device, &pass, SIZE_PX * UVec2::new(4, 1));
+    let mut states: [FrameState; 4] = Default::default();
+    let mut parts: Vec<HostView<'_>> = (0..)
+        .zip(views.iter().zip(&mut states))
+        .map(|(i, (view, state))| HostView { view, at_px: UVec2::new(i * SIZE_PX.x, 0), state })
+        .collect();
+    let target = HostTarget {
+        color: &attachments.color,
+        resolve: None,
+        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+        depth: attachments.depth.as_ref(),
+        depth_load: wgpu::LoadOp::Clear(0.0),
+    };
+    let mut encoder = encoder(&gpu);
+    renderer.encode((&gpu.device, &gpu.queue), &mut encoder, &mut scene, &mut parts, (&pass, &target)).unwrap();
+    let all = read(&gpu, encoder, attachments.picture()).unwrap();
+    let texels = |picture: &[u8], i: u32, width: u32| -> Vec<glam::Vec4> {
+        let texels = Precision::Half.texels(picture);
+        let row = |y: u32| (y * width + i * SIZE_PX.x) as usize;
+        (0..SIZE_PX.y).flat_map(|y| texels[row(y)..row(y) + SIZE_PX.x as usize].to_vec()).collect()
+    };
+    for (i, view) in (0..).zip(&views) {
+        let [alone, _] = captured(&gpu, &mut renderer, &mut scene, view, 1);
+        let (here, there) = (texels(&all, i, 4 * SIZE_PX.x), texels(&alone, 0, SIZE_PX.x));
+        // At another place of the target, interpolation rounds in another way.
+        let apart = here.iter().zip(&there).filter(|(a, b)| !a.abs_diff_eq(**b, 2e-3)).count();
+        assert!(apart <= 8, "{apart} pixels of {:?} are others than in a picture of their own", view.channel);
+        let covered: Vec<&glam::Vec4> = here.iter().filter(|texel| texel.w == 1.0).collect();
+        assert!(covered.len() > 3000);
+        if i == 0 {
+            assert!(covered.iter().all(|n| (n.truncate().length() - 1.0).abs() < 2e-3));
+        }
+    }
+    let shown = View { channel: views[0].channel, ..view() };
+    let display = PassFormat { color: formats::CAPTURED_DISPLAY, output: Output::Display, ..pass };
+    let mut state = FrameState::default();
+    let device = (&gpu.device, &gpu.queue);
+    let refused = renderer.prepare_frame(device, &mut scene, (&shown, UVec2::ZERO), &display, &mut state);
+    assert!(matches!(refused.err(), Some(RenderError::Pass(_))));
+}
+
+#[test]
 fn what_cannot_be_drawn_is_said_before_anything_is_recorded() {
     let gpu = gpu(Precision::Half);
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue);

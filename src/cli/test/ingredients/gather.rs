@@ -183,6 +183,7 @@ fn textures(scene: &Scene, material: usize, known: &mut BTreeMap<usize, String>)
         let hash = known.entry(image).or_insert_with(|| match &scene.images[image].pixels {
             Pixels::Rgba8(texels) => content_hash(texels),
             Pixels::Rgba16(texels) => content_hash(bytemuck::cast_slice(texels)),
+            Pixels::OfHost => content_hash(&[]),
         });
         hash.clone()
     };
