@@ -8,7 +8,8 @@ fn backdrop(d: vec3f) -> vec3f {
     let r = background.perceptual_roughness;
     let in_world = d * environment.environment_from_world;
     var radiance = prefiltered_radiance(d, r);
-    for (var i = 0u; i < environment.sun_count; i++) {
+    // All places: where no sun is, there is no illuminance.
+    for (var i = 0u; i < 4u; i++) {
         let sun = environment.suns[i];
         let NoL = saturate(dot(in_world, sun.xyz));
         let D = D_GGX(min(sqrt(r * r * r * r + sun.w), 1.0), in_world, unit_half_vector(sun.xyz, in_world));

@@ -1,9 +1,10 @@
 #import "lighting/punctual_light.wgsl"
+#import <turns>
 
 // Radiance toward the viewer from all of them.
 fn punctual_radiance(lobes: Lobes, position: vec3f) -> vec3f {
     var radiance = vec3f(0.0);
-    for (var i = 0u; i < frame.light_count; i++) {
+    for (var i = 0u; i < turns(frame.light_count, position); i++) {
         radiance += radiance_of_light(lobes, position, i);
     }
     return radiance;

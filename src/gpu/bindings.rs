@@ -1,7 +1,7 @@
 //! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
 
 use crate::shader::{
-    Backdrop, LightList, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING,
+    Backdrop, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING,
     SceneFeatures, Shading, disney_binding, material_texture_binding,
 };
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
@@ -31,9 +31,9 @@ pub fn frame_entries(features: SceneFeatures) -> Vec<BindGroupLayoutEntry> {
         entries.extend([texture(FRAME_DFG, true), sampler(FRAME_SAMPLER)]);
     }
     if features.punctual {
-        let ty = match features.light_list {
-            LightList::Few => BufferBindingType::Uniform,
-            _ => BufferBindingType::Storage { read_only: true },
+        let ty = match features.light_list.is_uniform() {
+            true => BufferBindingType::Uniform,
+            false => BufferBindingType::Storage { read_only: true },
         };
         entries.push(buffer(FRAME_LIGHTS, ShaderStages::FRAGMENT, ty));
     }

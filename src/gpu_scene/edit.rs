@@ -50,7 +50,9 @@ impl GpuScene {
 
     /// Takes the lights of `scene`, of which this was made, as they are now, and in the world.
     pub fn set_lights(&mut self, queue: &wgpu::Queue, scene: &Scene, lights_in_world: &[LightInWorld]) -> bool {
-        let features = SceneFeatures { suns: self.features.suns, ..SceneFeatures::lit_by(scene, lights_in_world) };
+        let wanted = SceneFeatures::lit_by(scene, lights_in_world);
+        let light_list = self.features.light_list.kept_for(wanted.light_list);
+        let features = SceneFeatures { suns: self.features.suns, light_list, ..wanted };
         let origin_in_world = self.drawables.origin_in_world;
         let replaced = features == self.features
             && self.lights.as_mut().is_none_or(|lights| lights.replace(queue, lights_in_world, origin_in_world));

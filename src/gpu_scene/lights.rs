@@ -53,7 +53,7 @@ impl Sorted {
         let lit: Vec<usize> = order.iter().copied().filter(|&i| !is_dark(&lights[i])).collect();
         let reaches: Vec<Reach> = lit.iter().filter_map(|&i| reach(&lights[i])).collect();
         let mut data: Vec<types::Light> = order.iter().map(|&i| gpu_light(&lights[i], origin_in_world)).collect();
-        if list == LightList::Few {
+        if list.is_uniform() {
             // The shader declares an array of this length.
             data.resize(FEW_LIGHTS, types::Light::default());
         }
@@ -75,9 +75,9 @@ impl GpuLights {
         if needed > allowed {
             return Err(UploadError::TooLarge { what: "the array of lights", needed, allowed });
         }
-        let usage = match list {
-            LightList::Few => wgpu::BufferUsages::UNIFORM,
-            _ => wgpu::BufferUsages::STORAGE,
+        let usage = match list.is_uniform() {
+            true => wgpu::BufferUsages::UNIFORM,
+            false => wgpu::BufferUsages::STORAGE,
         };
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         let buffer = filled_buffer(device, "lights", bytemuck::cast_slice(&data), usage)?;

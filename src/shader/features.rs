@@ -47,9 +47,15 @@ const CLUSTERED_FROM: usize = 16;
 /// The most lights that are bound as a uniform, which software drivers read faster than a storage buffer.
 pub const FEW_LIGHTS: usize = 64;
 
+/// The most lights that shaders name one by one: llvmpipe takes a loop at the price of another light, and compiles and keeps a
+/// shader anew for a number of turns that is a uniform (docs/performance.md, "Many lights").
+const NAMED_LIGHTS: usize = 4;
+
 /// How shaders find the punctual lights that reach a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LightList {
+    /// So many that shine, 1 to 4, of [`FEW_LIGHTS`] at most.
+    Named(u8),
     /// All of them, [`FEW_LIGHTS`] at most.
     Few,
     /// All of them.
@@ -66,8 +72,32 @@ impl LightList {
         match (with_range >= CLUSTERED_FROM, with_range == lit) {
             (true, true) => Self::Clustered,
             (true, false) => Self::ClusteredAndUnbounded,
+            (false, _) if lights <= FEW_LIGHTS && (1..=NAMED_LIGHTS).contains(&lit) => Self::Named(lit as u8),
             (false, _) if lights <= FEW_LIGHTS => Self::Few,
             (false, _) => Self::All,
+        }
+    }
+
+    /// What finds `wanted` lights in a scene where this has been found before: names suffice for fewer, the others are dark.
+    pub(crate) fn kept_for(self, wanted: Self) -> Self {
+        match (self, wanted) {
+            (Self::Named(places), Self::Named(lights)) if lights <= places => self,
+            _ => wanted,
+        }
+    }
+
+    /// Whether the lights are a uniform, of [`FEW_LIGHTS`] places.
+    pub fn is_uniform(self) -> bool {
+        matches!(self, Self::Named(_) | Self::Few)
+    }
+
+    /// What names of pipelines say.
+    fn flag(self) -> &'static str {
+        match self {
+            Self::Named(lights) => ["", "one", "two", "three", "four"][usize::from(lights).min(NAMED_LIGHTS)],
+            Self::Few => "few",
+            Self::All => "many",
+            Self::Clustered | Self::ClusteredAndUnbounded => "clustered",
         }
     }
 
@@ -368,8 +398,7 @@ impl fmt::Display for ForwardFeatures {
         let lit = self.material.shading.is_lit();
         let flags = [
             (lit && self.scene.punctual, "punctual"),
-            (lit && self.scene.punctual && self.scene.light_list == LightList::All, "many"),
-            (lit && self.scene.punctual && self.scene.light_list.is_clustered(), "clustered"),
+            (lit && self.scene.punctual, self.scene.light_list.flag()),
             (lit && self.scene.light_list == LightList::ClusteredAndUnbounded, "unbounded"),
             (lit && self.scene.environment, "environment"),
             (lit && !self.energy_compensation, "single_scatter"),

@@ -57,6 +57,7 @@ pub fn deferred_module(
     slots.insert("interface", Slot::Text(pulled::vertex_interface(&features.vertex, features.channel)));
     slots.insert("material", Slot::Text(interface::material_interface(&features.material, Gradients::Explicit)));
     slots.insert("seen", Slot::Text(pulled::seen(samples, 2)));
+    slots.insert("turns", Slot::File("lighting/turns_hidden.wgsl"));
     compose(sources, "pass/deferred.wgsl", &slots)
 }
 
@@ -130,14 +131,19 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
         ("lobes", choose(material.shading == Shading::Disney, "lighting/disney.wgsl", "lighting/lobes.wgsl")),
         (
             "punctual",
-            Slot::File(match (punctual, scene.light_list.is_clustered(), channel) {
+            Slot::File(match (punctual, scene.light_list, channel) {
                 (false, ..) => "lighting/punctual_none.wgsl",
-                (true, false, false) => "lighting/punctual.wgsl",
-                (true, false, true) => "channel/punctual.wgsl",
-                (true, true, _) => "lighting/punctual_clustered.wgsl",
+                (true, LightList::Named(_), _) => "lighting/punctual_named.wgsl",
+                (true, LightList::Few | LightList::All, false) => "lighting/punctual.wgsl",
+                (true, LightList::Few | LightList::All, true) => "channel/punctual.wgsl",
+                (true, LightList::Clustered | LightList::ClusteredAndUnbounded, _) => {
+                    "lighting/punctual_clustered.wgsl"
+                }
             }),
         ),
-        ("lights", choose(scene.light_list == LightList::Few, "lighting/lights_few.wgsl", "lighting/lights.wgsl")),
+        ("each_light", Slot::Text(each_light(scene.light_list))),
+        ("turns", Slot::File("lighting/turns.wgsl")),
+        ("lights", choose(scene.light_list.is_uniform(), "lighting/lights_few.wgsl", "lighting/lights.wgsl")),
         (
             "unbounded",
             choose(
@@ -219,8 +225,22 @@ fn shading(shading: Shading, term: Option<Term>) -> &'static str {
 
 /// The sum over the suns, without a loop.
 fn each_sun(suns: u8) -> String {
-    let radiances: Vec<String> = (0..suns).map(|i| format!("radiance_of_sun(lobes, {i}u)")).collect();
-    format!("fn radiance_of_suns(lobes: Lobes) -> vec3f {{\n    return {};\n}}\n", radiances.join(" + "))
+    let sum = named((0..suns).map(|i| format!("radiance_of_sun(lobes, {i}u)")));
+    format!("fn radiance_of_suns(lobes: Lobes) -> vec3f {{\n    return {sum};\n}}\n")
+}
+
+/// The sum over lights that are named, and their number.
+fn each_light(list: LightList) -> String {
+    let LightList::Named(lights) = list else { return String::new() };
+    let sum = named((0..lights).map(|i| format!("radiance_of_light(lobes, position, {i}u)")));
+    format!(
+        "const NAMED_LIGHTS: u32 = {lights}u;\n\n\
+         fn radiance_of_named(lobes: Lobes, position: vec3f) -> vec3f {{\n    return {sum};\n}}\n"
+    )
+}
+
+fn named(radiances: impl Iterator<Item = String>) -> String {
+    radiances.collect::<Vec<_>>().join(" + ")
 }
 
 fn reflection(features: &ForwardFeatures) -> &'static str {

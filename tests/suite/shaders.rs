@@ -35,8 +35,8 @@ pub(crate) fn term_features() -> Vec<ForwardFeatures> {
     forward_features().iter().step_by(7).flat_map(of_term).collect()
 }
 
-const LIGHT_LISTS: [LightList; 4] =
-    [LightList::Few, LightList::All, LightList::Clustered, LightList::ClusteredAndUnbounded];
+const LIGHT_LISTS: [LightList; 5] =
+    [LightList::Named(2), LightList::Few, LightList::All, LightList::Clustered, LightList::ClusteredAndUnbounded];
 
 /// A material under every kind of light.
 fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [ForwardFeatures; 4] {
@@ -50,7 +50,7 @@ fn of_material(material: &Material, primitive: &Primitive, slots: u32) -> [Forwa
     [(false, false), (false, true), (true, false), (true, true)].map(|(punctual, environment)| {
         let scene_features = SceneFeatures {
             punctual,
-            light_list: LIGHT_LISTS[(slots / 2) as usize % 4],
+            light_list: LIGHT_LISTS[(slots / 2) as usize % 5],
             environment,
             fresnel_tail: !slots.is_multiple_of(3),
             suns: if environment { (slots % 3) as u8 } else { 0 },
