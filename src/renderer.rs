@@ -16,7 +16,7 @@ mod target;
 mod uniforms;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
-use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, is_worth_deferring, plan};
+use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, plan};
 use crate::gpu::formats::{self, Precision};
 use crate::gpu::{Identity, LostFlag, Staging, Uploads};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, WhiteFurnace};
@@ -60,7 +60,7 @@ pub enum PathChoice {
     /// Always forward: what an engine expects of a pass of its own.
     #[default]
     Forward,
-    /// Deferred where a scene is one draw of small triangles; measured to be faster on software drivers.
+    /// Deferred where a scene is a few draws of small triangles; measured to be faster on software drivers.
     Faster,
     /// Deferred wherever it can be.
     Deferred,
@@ -148,10 +148,7 @@ impl Renderer {
         let triangles = |drawable: usize| scene.draws[drawable].primitive.indices.len() as u64 / 3;
         let is_deferred = match self.path {
             PathChoice::Forward => false,
-            PathChoice::Faster => {
-                can && is_worth_deferring(&scene.drawables)
-                    && are_small(&scene.drawables, view, target.samples, triangles)
-            }
+            PathChoice::Faster => can && are_small(&scene.drawables, view, target.samples, triangles),
             PathChoice::Deferred => can,
         };
         if is_deferred { RenderPath::Deferred } else { RenderPath::Forward }
@@ -205,12 +202,7 @@ impl Renderer {
         scene: &Scene,
         mut uploaded: GpuScene,
     ) -> GpuScene {
-        let may_defer = match self.path {
-            PathChoice::Forward => false,
-            PathChoice::Faster => is_worth_deferring(&uploaded.drawables),
-            PathChoice::Deferred => true,
-        };
-        if may_defer && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
+        if self.path != PathChoice::Forward && device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             uploaded.pull(device, queue, scene);
         }
         uploaded

@@ -1,5 +1,5 @@
 #import "lighting/punctual_light.wgsl"
-#import <turns>
+#import "lighting/turns.wgsl"
 
 // Radiance toward the viewer from all of them.
 fn punctual_radiance(lobes: Lobes, position: vec3f) -> vec3f {

@@ -1,4 +1,4 @@
-#import <turns>
+#import "lighting/turns.wgsl"
 
 // Radiance from the lights that reach everything: directional ones, and those without a range. They come first.
 fn unbounded_radiance(lobes: Lobes, position: vec3f) -> vec3f {

@@ -16,5 +16,5 @@ pub use clusters::{Clusters, Reach, clusters};
 pub use cull::{Culling, clip_from_origin};
 pub use drawables::{Drawable, Drawables, PlacedInstance, Placements};
 pub use identity::PrimitivePlace;
-pub use path::{RenderPath, are_small, is_deferrable, is_worth_deferring, rectangle_around};
+pub use path::{RenderPath, are_small, is_deferrable, rectangle_around};
 pub use plan::{Culled, Draw, FramePlan, PipelineKey, PlanOptions, Planner, Raster, forward_features, plan};

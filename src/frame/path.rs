@@ -31,8 +31,8 @@ const MAX_DRAWS: usize = 64;
 
 /// Pixels of the picture a triangle, below which the deferred path is the faster one on a software driver, for shaders
 /// with and without textures (docs/performance.md). With several samples blocks beside edges cost more.
-const SMALL_TRIANGLE_PX: f64 = 50.0;
-const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 150.0;
+const SMALL_TRIANGLE_PX: f64 = 75.0;
+const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 250.0;
 
 /// Whether the deferred path can draw these: a few opaque draws of triangles, each at one place.
 pub fn is_deferrable(drawables: &Drawables) -> bool {
@@ -42,12 +42,6 @@ pub fn is_deferrable(drawables: &Drawables) -> bool {
             && drawable.placements.len() == 1
     };
     (1..=MAX_DRAWS).contains(&drawables.draws.len()) && drawables.draws.iter().all(fits)
-}
-
-/// Whether the deferred path pays, as far as a view has no say in it: for one draw. llvmpipe of Mesa 22.3 keeps some 2.6 MB
-/// for each further draw of such a pass and frame for good, which a picture can bear and a viewer cannot.
-pub fn is_worth_deferring(drawables: &Drawables) -> bool {
-    is_deferrable(drawables) && drawables.draws.len() == 1
 }
 
 /// Whether triangles are small enough for the deferred path to pay, over all drawables; `triangles` says how many one has.

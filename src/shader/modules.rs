@@ -57,7 +57,6 @@ pub fn deferred_module(
     slots.insert("interface", Slot::Text(pulled::vertex_interface(&features.vertex, features.channel)));
     slots.insert("material", Slot::Text(interface::material_interface(&features.material, Gradients::Explicit)));
     slots.insert("seen", Slot::Text(pulled::seen(samples, 2)));
-    slots.insert("turns", Slot::File("lighting/turns_hidden.wgsl"));
     compose(sources, "pass/deferred.wgsl", &slots)
 }
 
@@ -142,7 +141,6 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
             }),
         ),
         ("each_light", Slot::Text(each_light(scene.light_list))),
-        ("turns", Slot::File("lighting/turns.wgsl")),
         ("lights", choose(scene.light_list.is_uniform(), "lighting/lights_few.wgsl", "lighting/lights.wgsl")),
         (
             "unbounded",

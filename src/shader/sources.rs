@@ -106,7 +106,6 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "lighting/suns_none.wgsl",
     "lighting/taps.wgsl",
     "lighting/turns.wgsl",
-    "lighting/turns_hidden.wgsl",
     "lighting/unbounded.wgsl",
     "lighting/unbounded_none.wgsl",
     "lighting/unlit.wgsl",

@@ -1,6 +1,6 @@
 //! What is held in memory on the way to the device, counted by wgpu's allocator.
 
-use crate::support::{add_light, gpu, sphere_scene};
+use crate::support::{add_light, gpu, program, sphere_scene};
 use glam::{DVec3, Vec2};
 use specula::gpu::formats::{self, Precision};
 use specula::gpu::{Gpu, Staging, Uploads};
@@ -53,6 +53,32 @@ fn an_upload_leaves_nothing_but_the_scene() {
     // Textures without their alignment, and what is not counted beside them: uniforms and instances.
     let expected = uploaded.bytes.textures + uploaded.bytes.geometry;
     assert!((expected..expected + BYTES).contains(&held), "{held} bytes are held for {expected}");
+}
+
+/// llvmpipe compiled uniforms that end loops into the shader, once more for every draw, and kept that.
+#[cfg(target_os = "linux")]
+#[test]
+fn frames_of_many_draws_leave_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let most = |frames: u32| {
+        let light = |x: u32| ["--light".to_owned(), format!("point:intensity=20cd,at={x},2,3")];
+        let mut command = program();
+        command.args(["render", "assets/spheres.glb", "--path", "deferred", "--size", "32x32", "--quiet", "-o"]);
+        command.arg(folder.path().join(frames.to_string())).args(["--frames", &format!("0..{frames}")]);
+        let mut child = command.args((0..7).flat_map(light)).spawn().unwrap();
+        let mut most_kb = 0;
+        while child.try_wait().unwrap().is_none() {
+            let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+            let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+            most_kb = line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok()).unwrap_or(most_kb);
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        assert!(child.wait().unwrap().success());
+        most_kb
+    };
+    let (few, many): (u64, u64) = (most(2), most(12));
+    // It was 18 draws of 2.6 MB for each of ten frames.
+    assert!(many < few + 100_000, "{few} kB for two frames, {many} for twelve");
 }
 
 fn texture(gpu: &Gpu) -> wgpu::Texture {

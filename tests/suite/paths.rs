@@ -166,7 +166,7 @@ fn the_deferred_path_is_taken_only_where_it_can_be_and_pays() {
     let channel = specula::scene::Channel::Nan;
     let cases = [
         (sphere_scene(Material::default()), &small, PathChoice::Faster, RenderPath::Deferred),
-        (scene(), &small, PathChoice::Faster, RenderPath::Forward),
+        (scene(), &small, PathChoice::Faster, RenderPath::Deferred),
         (scene(), &small, PathChoice::Deferred, RenderPath::Deferred),
         (scene(), &small, PathChoice::Forward, RenderPath::Forward),
         (blended, &small, PathChoice::Deferred, RenderPath::Forward),
