@@ -106,7 +106,7 @@ mod tests {
             are_small(&drawables, &view, samples, |_| scene.meshes[0].primitives[0].indices.len() as u64 / 3)
         };
         assert!(small(512, 1) && small(512, 4) && !small(4096, 1) && !small(4096, 4));
-        assert!(!small(1000, 1) && small(1000, 4));
+        assert!(!small(1300, 1) && small(1300, 4));
     }
 
     #[test]

@@ -178,8 +178,8 @@ mod tests {
 
     #[test]
     fn an_error_in_wgsl_names_the_original_line() {
-        let slots =
-            text_slots(&[("types", "struct A { x: f32 }\nfn broken() -> f32 { return nonsense; }"), ("target", "")]);
+        let types = "struct A { x: f32 }\nfn broken() -> f32 { return nonsense; }";
+        let slots = text_slots(&[("types", types), ("backdrop", ""), ("target", "")]);
         let composed = compose(&ShaderSources::default(), "pass/background.wgsl", &slots).unwrap();
         let error = composed.parse().unwrap_err().to_string();
         assert!(error.starts_with("<types>:2: "), "{error}");
