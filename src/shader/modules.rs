@@ -130,14 +130,11 @@ pub fn forward_slots(features: &ForwardFeatures) -> Slots {
         ("lobes", choose(material.shading == Shading::Disney, "lighting/disney.wgsl", "lighting/lobes.wgsl")),
         (
             "punctual",
-            Slot::File(match (punctual, scene.light_list, channel) {
-                (false, ..) => "lighting/punctual_none.wgsl",
-                (true, LightList::Named(_), _) => "lighting/punctual_named.wgsl",
-                (true, LightList::Few | LightList::All, false) => "lighting/punctual.wgsl",
-                (true, LightList::Few | LightList::All, true) => "channel/punctual.wgsl",
-                (true, LightList::Clustered | LightList::ClusteredAndUnbounded, _) => {
-                    "lighting/punctual_clustered.wgsl"
-                }
+            Slot::File(match (punctual, scene.light_list) {
+                (false, _) => "lighting/punctual_none.wgsl",
+                (true, LightList::Named(_)) => "lighting/punctual_named.wgsl",
+                (true, LightList::Few | LightList::All) => "lighting/punctual.wgsl",
+                (true, LightList::Clustered | LightList::ClusteredAndUnbounded) => "lighting/punctual_clustered.wgsl",
             }),
         ),
         ("each_light", Slot::Text(each_light(scene.light_list))),

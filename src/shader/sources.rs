@@ -36,7 +36,6 @@ pub const SOURCES: &[(&str, &str)] = embedded![
     "channel/lit.wgsl",
     "channel/lobes_disney.wgsl",
     "channel/lobes_standard.wgsl",
-    "channel/punctual.wgsl",
     "channel/radiance.wgsl",
     "channel/suns.wgsl",
     "channel/unlit.wgsl",
