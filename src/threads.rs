@@ -2,14 +2,19 @@
 //! are loops on the caller's thread, and give the same bits.
 
 #[cfg(feature = "threads")]
-pub(crate) use rayon::prelude::*;
+pub(crate) use rayon::{join, prelude::*};
 
 #[cfg(not(feature = "threads"))]
-pub(crate) use alone::{Loops, Slices, Whole};
+pub(crate) use alone::{Loops, Slices, Whole, join};
 
 #[cfg(not(feature = "threads"))]
 mod alone {
     use std::slice::{Chunks, ChunksExactMut, ChunksMut, Iter};
+
+    /// Both, the first first.
+    pub(crate) fn join<A, B>(first: impl FnOnce() -> A, second: impl FnOnce() -> B) -> (A, B) {
+        (first(), second())
+    }
 
     /// Rayon's names for parts of slices.
     pub(crate) trait Slices<T> {
@@ -48,6 +53,10 @@ mod alone {
 
     /// Of what is done with them.
     pub(crate) trait Loops: Iterator + Sized {
+        fn par_bridge(self) -> Self {
+            self
+        }
+
         fn flat_map_iter<I: IntoIterator>(self, each: impl FnMut(Self::Item) -> I) -> impl Iterator<Item = I::Item> {
             self.flat_map(each)
         }

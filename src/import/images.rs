@@ -11,6 +11,7 @@ use ::image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
 use ::image::{ColorType, DynamicImage, ImageDecoder, ImageResult, Limits as DecoderLimits};
 use gltf::json;
 use std::borrow::Cow;
+use std::cmp::Reverse;
 use std::fmt::Display;
 use std::io::Cursor;
 use std::sync::Arc;
@@ -21,22 +22,32 @@ use zune_core::options::DecoderOptions;
 /// What a PNG may unpack besides its pixels: rows, profiles and comments, which may be bombs as well.
 pub(super) const DECODER_BYTES: u64 = 64 << 20;
 
-/// Decodes those images of the document that `indices` list, in that order, on all cores.
+/// Decodes those images of the document that `indices` list, on all cores; they come in that order.
 pub(super) fn import(
     accessors: &Accessors<'_>,
     resources: &Resources<'_>,
     indices: &[usize],
     progress: &dyn Progress,
 ) -> Result<Vec<Image>, Fault> {
-    progress.begin("decode images", indices.len() as u64);
-    let import = |&index: &usize| {
+    // One image is decoded on one core: what takes longest must not begin last.
+    let mut longest_first: Vec<(usize, usize)> = indices.iter().copied().enumerate().collect();
+    longest_first.sort_by_cached_key(|&(_, index)| Reverse(encoded_bytes(accessors, resources, index)));
+    let import = |(place, index)| {
         let image = import_one(accessors, resources, index);
         progress.advance(1);
-        image
+        (place, image)
     };
     // Collected before the first error is looked for, so that the same one is reported every time.
-    let images: Vec<_> = indices.par_iter().map(import).collect();
-    images.into_iter().collect()
+    let mut images: Vec<_> = longest_first.into_iter().par_bridge().map(import).collect();
+    images.sort_by_key(|(place, _)| *place);
+    images.into_iter().map(|(_, image)| image).collect()
+}
+
+/// How long an image's file is; 0 where that is an error to be told of when it is decoded.
+fn encoded_bytes(accessors: &Accessors<'_>, resources: &Resources<'_>, index: usize) -> u64 {
+    let json = &accessors.root.images[index];
+    let length_of_view = |view: json::Index<_>| accessors.root.buffer_views[view.value()].byte_length.0;
+    json.buffer_view.map_or_else(|| json.uri.as_deref().map_or(0, |uri| resources.length(uri)), length_of_view)
 }
 
 fn import_one(accessors: &Accessors<'_>, resources: &Resources<'_>, index: usize) -> Result<Image, Fault> {

@@ -71,9 +71,9 @@ pub struct ImportOptions<'a> {
     /// Leaves out the textures that materials have but never sample: normal maps of unlit ones, emission times zero.
     /// Materials must not change after that.
     pub sampled_textures_only: bool,
-    /// Told of the stages "read", "build geometry" and "decode images".
+    /// Told of the stages "read" and "decode", whose steps are primitives and images.
     pub progress: &'a dyn Progress,
-    /// Given the scene of a model with images before they are decoded: each is a few texels of half the light, of no metal
+    /// Given the scene of a model with images while they are decoded: each is a few texels of half the light, of no metal
     /// and no relief. Nobody knows yet whether the model can be imported.
     pub sketch: Option<&'a (dyn Fn(Scene) + Sync)>,
 }
@@ -189,23 +189,31 @@ fn import_model(
     let buffers = Buffers::load(root, container.binary, &resources)?;
     let accessors = Accessors { root, buffers: &buffers, budget: &budget, limits: &options.limits };
     instancing::import(&accessors, &mut nodes, notes)?;
-    let meshes = build_meshes(&accessors, &materials, options.progress, notes)?;
-    let mut scene = Scene {
-        name: chosen.name,
-        nodes,
-        roots: chosen.roots,
-        meshes,
-        materials,
-        textures: textures.textures,
-        images: Vec::new(),
-        cameras,
-        lights,
-        environment: None,
+    let primitives: usize = root.meshes.iter().map(|mesh| mesh.primitives.len()).sum();
+    options.progress.begin("decode", (primitives + textures.images.len()) as u64);
+    let build = || -> Result<Scene, Fault> {
+        let meshes = build_meshes(&accessors, &materials, options.progress, notes)?;
+        let scene = Scene {
+            name: chosen.name,
+            nodes,
+            roots: chosen.roots,
+            meshes,
+            materials,
+            textures: textures.textures,
+            images: Vec::new(),
+            cameras,
+            lights,
+            environment: None,
+        };
+        if let (Some(give), false) = (options.sketch, textures.images.is_empty()) {
+            give(Scene { images: sketch::images(&scene, textures.images.len()), ..scene.clone() });
+        }
+        Ok(scene)
     };
-    if let (Some(give), false) = (options.sketch, textures.images.is_empty()) {
-        give(Scene { images: sketch::images(&scene, textures.images.len()), ..scene.clone() });
-    }
-    scene.images = images::import(&accessors, &resources, &textures.images, options.progress)?;
+    let decode = || images::import(&accessors, &resources, &textures.images, options.progress);
+    let (scene, images) = join(build, decode);
+    let mut scene = scene?;
+    scene.images = images?;
     let scene_names = root.scenes.iter().map(|scene| scene.name.clone()).collect();
     let extensions_used = root.extensions_used.clone();
     Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index, extensions_used })
@@ -239,7 +247,6 @@ fn build_meshes(
     let root = accessors.root;
     let jobs: Vec<(usize, usize)> =
         root.meshes.iter().enumerate().flat_map(|(m, mesh)| (0..mesh.primitives.len()).map(move |p| (m, p))).collect();
-    progress.begin("build geometry", jobs.len() as u64);
     let build = |&(m, p): &(usize, usize)| -> Result<(Option<Primitive>, Notes), Fault> {
         let json = &root.meshes[m].primitives[p];
         let material = json.material.map_or(materials.len() - 1, |material| material.value());

@@ -42,6 +42,12 @@ impl<'a> Resources<'a> {
         if data_of(uri).is_some() { Ok(None) } else { self.resolve(uri, pointer).map(Some) }
     }
 
+    /// How many bytes `uri` takes as it is encoded; 0 where it cannot be followed.
+    pub(super) fn length(&self, uri: &str) -> u64 {
+        let length_of_file = || fs::metadata(self.resolve(uri, "").ok()?).ok().map(|file| file.len());
+        data_of(uri).map_or_else(|| length_of_file().unwrap_or(0), |data| data.len() as u64)
+    }
+
     /// The part of a data URI after `data:` (RFC 2397).
     fn decode_data(&self, rest: &str, pointer: &str) -> Result<Vec<u8>, Fault> {
         let Some((media, data)) = rest.split_once(',') else {
