@@ -83,12 +83,14 @@ pub(super) struct CulledStats {
     pub(super) outside: u32,
     /// So small that no sample of a pixel can see them.
     pub(super) between_samples: u32,
+    /// Behind others.
+    pub(super) hidden: u32,
 }
 
 impl CulledStats {
     pub(super) fn of(culled: Culled) -> Self {
-        let Culled { all, outside, between_samples } = culled;
-        Self { all, drawn: culled.drawn(), outside, between_samples }
+        let Culled { all, outside, between_samples, hidden } = culled;
+        Self { all, drawn: culled.drawn(), outside, between_samples, hidden }
     }
 }
 

@@ -77,17 +77,22 @@ fn held(object: &Bounds, origin_from_object: &DMat4) -> (Vec3, Vec3) {
 
 /// Centre and half extent of a placed box, the latter with room for all rounding on the way to a vertex's place.
 fn placed(object: &Bounds, origin_from_object: &DMat4) -> (DVec3, DVec3) {
-    let matrix = origin_from_object;
-    let absolute = |v: DVec3| {
-        matrix.x_axis.truncate().abs() * v.x
-            + matrix.y_axis.truncate().abs() * v.y
-            + matrix.z_axis.truncate().abs() * v.z
-    };
-    let center = matrix.transform_point3(object.center());
-    let half = absolute(0.5 * (object.max - object.min));
+    let center = origin_from_object.transform_point3(object.center());
+    let half = absolute(origin_from_object, 0.5 * (object.max - object.min));
+    (center, half + rounding(object, origin_from_object))
+}
+
+/// How far from where it should be a GPU may put a vertex, on each axis.
+pub(super) fn rounding(object: &Bounds, origin_from_object: &DMat4) -> DVec3 {
     // What is added up to one coordinate: large terms that cancel leave their rounding behind.
-    let summed = absolute(object.min.abs().max(object.max.abs())) + matrix.w_axis.truncate().abs();
-    (center, half + STEPS * STEP * summed + f64::from(f32::MIN_POSITIVE))
+    let reach = object.min.abs().max(object.max.abs());
+    let summed = absolute(origin_from_object, reach) + origin_from_object.w_axis.truncate().abs();
+    STEPS * STEP * summed + f64::from(f32::MIN_POSITIVE)
+}
+
+/// The product with the sizes of a matrix's numbers, without its translation.
+fn absolute(matrix: &DMat4, v: DVec3) -> DVec3 {
+    matrix.x_axis.truncate().abs() * v.x + matrix.y_axis.truncate().abs() * v.y + matrix.z_axis.truncate().abs() * v.z
 }
 
 #[cfg(test)]

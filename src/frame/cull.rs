@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// How far a clip coordinate may be off, of the sum of its terms' sizes: four products and three sums make at most 4
 /// steps of f32, here as on the GPU, and the rest is room.
-const ROUNDING: f32 = 16.0 * f32::EPSILON;
+pub(super) const ROUNDING: f32 = 16.0 * f32::EPSILON;
 
 /// Pixels by which the picture is taken to be larger on each side: points and lines are wider than their vertices, and
 /// rasterisers round places in the picture.
@@ -19,12 +19,21 @@ const SNAP_PX: f64 = 1.0 / 16.0;
 /// Boxes are tested in runs of this many, whose results stay in registers and the nearest cache.
 const RUN: usize = 256;
 
-/// Whether anything is left out. `Off` is for measuring and testing: the picture is the same.
+/// What is left out. Others than `On` are for measuring and testing: the picture is the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Culling {
     #[default]
     On,
+    /// All but what is hidden behind other things.
+    NotHidden,
     Off,
+}
+
+impl Culling {
+    /// The same, but with what is hidden.
+    pub fn but_hidden(self) -> Self {
+        if self == Self::On { Self::NotHidden } else { self }
+    }
 }
 
 /// `clip_from_origin`: what every vertex is multiplied with, around the scene's origin so that float32 suffices.
@@ -42,6 +51,14 @@ pub(super) enum Seen {
     BetweenSamples,
 }
 
+/// Where a box can be in the picture, px from the top left, and how near, as z / w.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shadow {
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+    pub(super) nearest: f64,
+}
+
 /// The half-space `normal . p + offset >= 0`, in which all is that one side of the picture leaves visible.
 #[derive(Debug, Clone, Copy)]
 struct Side {
@@ -55,8 +72,8 @@ struct Side {
 #[derive(Debug, Clone)]
 pub(super) struct Frustum {
     sides: [Side; 6],
-    clip_from_origin: DMat4,
-    size_px: UVec2,
+    pub(super) clip_from_origin: DMat4,
+    pub(super) size_px: UVec2,
     /// Where the samples of a pixel are; empty where that is not known.
     samples: &'static [DVec2],
 }
@@ -140,39 +157,69 @@ impl Frustum {
     }
 
     /// Whether a box's shadow on the picture contains no sample, wherever in it the rasteriser rounds its vertices to.
-    fn is_between_samples(&self, (center, half): (Vec3, Vec3)) -> bool {
-        let (c, h) = (center.as_dvec3(), half.as_dvec3());
-        let reach = (c.abs() + h).extend(1.0);
-        // The middle and the half width of a clip coordinate, with room for its rounding.
-        let extent = |row: DVec4| {
-            let half = row.truncate().abs().dot(h) + f64::from(ROUNDING) * row.abs().dot(reach);
-            (row.truncate().dot(c) + row.w, half)
-        };
-        let (middle_w, half_w) = extent(self.clip_from_origin.row(3));
-        let near_w = middle_w - half_w;
-        if self.samples.is_empty() || near_w.is_nan() || near_w <= 0.0 {
+    fn is_between_samples(&self, bounds: (Vec3, Vec3)) -> bool {
+        let (false, Some(extent)) = (self.samples.is_empty(), self.extent(bounds)) else { return false };
+        // Wider than a pixel, which has a sample.
+        let is_wide = |axis: usize| extent.half[axis] * f64::from(self.size_px[axis]) > extent.near_w;
+        if is_wide(0) || is_wide(1) {
             return false;
         }
-        let mut low = DVec2::ZERO;
-        let mut high = DVec2::ZERO;
-        for axis in 0..2 {
-            let (middle, half) = extent(self.clip_from_origin.row(axis));
-            let size = f64::from(self.size_px[axis]);
-            if half * size > near_w {
-                // Wider than a pixel, which has a sample.
-                return false;
-            }
-            let (least, most) = (middle - half, middle + half);
-            let far_w = middle_w + half_w;
-            let ndc = [(least / near_w).min(least / far_w), (most / near_w).max(most / far_w)];
-            // Rows count downward.
-            let ndc = if axis == 1 { [-ndc[1], -ndc[0]] } else { ndc };
-            low[axis] = 0.5 * (ndc[0] + 1.0) * size - SNAP_PX;
-            high[axis] = 0.5 * (ndc[1] + 1.0) * size + SNAP_PX;
-        }
+        let (low, high) = extent.in_picture(self.size_px);
+        let (low, high) = (low - SNAP_PX, high + SNAP_PX);
         // A sample lies at a whole number beside its place in the pixel.
         let is_inside = |&sample: &DVec2| (low - sample).ceil().cmple((high - sample).floor()).all();
         !self.samples.iter().any(is_inside)
+    }
+
+    /// Where the fragments of what is in a box can be, if all of it is before the eye.
+    pub(super) fn shadow(&self, bounds: (Vec3, Vec3)) -> Option<Shadow> {
+        let extent = self.extent(bounds)?;
+        let (low, high) = extent.in_picture(self.size_px);
+        Some(Shadow { low: low - BORDER_PX, high: high + BORDER_PX, nearest: extent.over_w(2)[1] })
+    }
+
+    /// How much of the picture a box can cover, of all; 0 where that is not known.
+    pub(super) fn share(&self, bounds: (Vec3, Vec3)) -> f64 {
+        let size = self.size_px.as_dvec2();
+        let Some(extent) = self.extent(bounds) else { return 0.0 };
+        let (low, high) = extent.in_picture(self.size_px);
+        let part = (high.min(size) - low.max(DVec2::ZERO)).max(DVec2::ZERO) / size;
+        part.x * part.y
+    }
+
+    fn extent(&self, (center, half): (Vec3, Vec3)) -> Option<Extent> {
+        let (c, h) = (center.as_dvec3(), half.as_dvec3());
+        let reach = (c.abs() + h).extend(1.0);
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_origin.row(row));
+        let middle = |row: DVec4| row.truncate().dot(c) + row.w;
+        let half = |row: DVec4| row.truncate().abs().dot(h) + f64::from(ROUNDING) * row.abs().dot(reach);
+        let (near_w, far_w) = (middle(w) - half(w), middle(w) + half(w));
+        // Also where it is no number.
+        (near_w > 0.0).then(|| Extent { middle: [x, y, z].map(middle), half: [x, y, z].map(half), near_w, far_w })
+    }
+}
+
+/// Between which clip coordinates a box is, with room for their rounding.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    middle: [f64; 3],
+    half: [f64; 3],
+    near_w: f64,
+    far_w: f64,
+}
+
+impl Extent {
+    /// The least and the most of a coordinate divided by w.
+    fn over_w(&self, axis: usize) -> [f64; 2] {
+        let (least, most) = (self.middle[axis] - self.half[axis], self.middle[axis] + self.half[axis]);
+        [(least / self.near_w).min(least / self.far_w), (most / self.near_w).max(most / self.far_w)]
+    }
+
+    /// The corners at the top left and at the bottom right, px.
+    fn in_picture(&self, size_px: UVec2) -> (DVec2, DVec2) {
+        let ([left, right], [bottom, top]) = (self.over_w(0), self.over_w(1));
+        let px = |x: f64, y: f64| 0.5 * (DVec2::new(x, -y) + 1.0) * size_px.as_dvec2();
+        (px(left, top), px(right, bottom))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::boxes::Boxes;
 use super::identity::{PrimitivePlace, first_of_same};
+use super::occlusion::Occluders;
 use crate::scene::{Bounds, Instance, Primitive, Scene, Topology};
 use crate::shader::{Alpha, MaterialFeatures, SceneFeatures, VertexFeatures};
 use glam::{DMat4, DVec3, Vec3};
@@ -52,6 +53,8 @@ pub struct Drawables {
     pub placements: Placements,
     /// Subtracted from every position before it becomes f32.
     pub origin_in_world: DVec3,
+    /// What may hide the rest, once [`Self::find_occluders`] was called.
+    pub occluders: Occluders,
     first_of_same: Vec<Vec<PrimitivePlace>>,
 }
 
@@ -70,12 +73,16 @@ impl Drawables {
         let origin_in_world = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
         let first_of_same = first_of_same(scene);
         let uses = uses(scene, &instances, &first_of_same);
-        let mut drawables =
-            Self { instances, draws: Vec::new(), placements: Placements::default(), origin_in_world, first_of_same };
+        let mut drawables = Self { instances, origin_in_world, first_of_same, ..Default::default() };
         for same in uses.chunk_by(|a, b| (a.place, a.mirrored) == (b.place, b.mirrored)) {
             drawables.add(scene, features, same);
         }
         drawables
+    }
+
+    /// Keeps those surfaces of `scene`, of which these are, that may hide others.
+    pub fn find_occluders(&mut self, scene: &Scene) {
+        self.occluders = Occluders::new(scene, self);
     }
 
     /// What a primitive of a mesh is drawn as.

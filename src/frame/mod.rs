@@ -6,6 +6,7 @@ mod cull;
 mod depth_order;
 mod drawables;
 mod identity;
+mod occlusion;
 mod path;
 mod plan;
 #[cfg(test)]
@@ -16,5 +17,6 @@ pub use clusters::{Clusters, Reach, clusters};
 pub use cull::{Culling, clip_from_origin};
 pub use drawables::{Drawable, Drawables, PlacedInstance, Placements};
 pub use identity::PrimitivePlace;
+pub use occlusion::Occluders;
 pub use path::{RenderPath, are_small, is_deferrable, rectangle_around};
 pub use plan::{Culled, Draw, FramePlan, PipelineKey, PlanOptions, Planner, Raster, forward_features, plan};

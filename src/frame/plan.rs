@@ -3,6 +3,7 @@
 use super::cull::{Culling, Frustum, Seen, clip_from_origin};
 use super::depth_order::DepthOrder;
 use super::drawables::{Drawable, Drawables};
+use super::occlusion::Occlusion;
 use crate::scene::{Background, Channel, Topology, View};
 use crate::shader::{ForwardFeatures, SceneFeatures};
 use glam::Vec3;
@@ -76,11 +77,13 @@ pub struct Culled {
     pub outside: u32,
     /// So small that they lie between the samples.
     pub between_samples: u32,
+    /// Behind others.
+    pub hidden: u32,
 }
 
 impl Culled {
     pub fn drawn(self) -> u32 {
-        self.all - self.outside - self.between_samples
+        self.all - self.outside - self.between_samples - self.hidden
     }
 }
 
@@ -121,6 +124,7 @@ pub struct Planner {
     /// What the pipelines depend on, and the pipeline of each drawable.
     shaders: Option<ForwardFeaturesOfView>,
     pipeline_of: Vec<usize>,
+    occlusion: Occlusion,
     order: DepthOrder,
     blended: Vec<Blended>,
 }
@@ -202,7 +206,14 @@ impl Planner {
 
         let clip_from_origin = clip_from_origin(view, drawables.origin_in_world);
         let frustum = Frustum::new(clip_from_origin, view.size_px, options.samples);
-        let frustum = (options.culling == Culling::On).then_some(&frustum);
+        // Channels draw what is hidden too, and wider than it is.
+        let hides = options.culling == Culling::On && view.channel.is_none() && !drawables.occluders.is_empty();
+        if hides {
+            self.occlusion.look(drawables, &frustum)
+        } else {
+            self.occlusion.clear()
+        }
+        let frustum = (options.culling != Culling::Off).then_some(&frustum);
         let forward = view.camera.forward_in_world().as_vec3();
         for (index, drawable) in drawables.draws.iter().enumerate() {
             self.look(drawables, (index, drawable), (frustum, forward), plan);
@@ -245,6 +256,11 @@ impl Planner {
             plan.drawables.outside += 1;
             return;
         }
+        if frustum.is_some_and(|frustum| self.occlusion.hides(frustum, drawable.bounds)) {
+            plan.placements.hidden += count;
+            plan.drawables.hidden += 1;
+            return;
+        }
         let before = plan.placements;
         let boxes = &drawables.placements.boxes;
         let depth = |placement: usize| forward.dot(boxes.get(placement).0);
@@ -254,6 +270,9 @@ impl Planner {
         let mut each = |placement: usize, seen: Seen| match seen {
             Seen::Outside => plan.placements.outside += 1,
             Seen::BetweenSamples => plan.placements.between_samples += 1,
+            Seen::Perhaps if frustum.is_some_and(|frustum| self.occlusion.hides(frustum, boxes.get(placement))) => {
+                plan.placements.hidden += 1;
+            }
             Seen::Perhaps if drawable.is_blended() => {
                 let (depth, drawable, placement) = (depth(placement), index as u32, placement as u32);
                 self.blended.push(Blended { depth, drawable, placement });
@@ -267,11 +286,12 @@ impl Planner {
             }
             None => drawable.placements.clone().for_each(|placement| each(placement, Seen::Perhaps)),
         }
-        let hidden = plan.placements.drawn() + count == before.drawn();
-        match hidden {
-            false => {}
-            true if plan.placements.between_samples > before.between_samples => plan.drawables.between_samples += 1,
-            true => plan.drawables.outside += 1,
+        let (now, is_drawn) = (plan.placements, plan.placements.drawn() + count > before.drawn());
+        match is_drawn {
+            true => {}
+            false if now.hidden > before.hidden => plan.drawables.hidden += 1,
+            false if now.between_samples > before.between_samples => plan.drawables.between_samples += 1,
+            false => plan.drawables.outside += 1,
         }
         if !self.order.is_empty() {
             let first = plan.visible.len() as u32;
@@ -336,8 +356,9 @@ impl fmt::Display for FramePlan {
 
 impl fmt::Display for Culled {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { all, outside, between_samples } = self;
+        let Self { all, outside, between_samples, hidden } = self;
         let drawn = self.drawn();
-        write!(f, "{drawn} of {all} drawn, {outside} outside of the picture, {between_samples} between its samples")
+        write!(f, "{drawn} of {all} drawn, {outside} outside of the picture, {between_samples} between its samples, ")?;
+        write!(f, "{hidden} hidden")
     }
 }

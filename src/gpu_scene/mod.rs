@@ -141,7 +141,8 @@ impl GpuScene {
     ) -> Result<Self, UploadError> {
         let mut features = SceneFeatures::of(scene);
         features.suns = maps.filter(|_| features.environment).map_or(0, |maps| maps.suns.len().min(MAX_SUNS) as u8);
-        let drawables = Drawables::new(scene, features);
+        let mut drawables = Drawables::new(scene, features);
+        drawables.find_occluders(scene);
         let origin_in_world = drawables.origin_in_world;
         let device = staging.device;
         let geometry = upload_primitives(device, scene, &drawables)?;

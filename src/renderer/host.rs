@@ -144,6 +144,7 @@ fn add(stats: &mut FrameStats, of_view: FrameStats) {
         all: a.all + b.all,
         outside: a.outside + b.outside,
         between_samples: a.between_samples + b.between_samples,
+        hidden: a.hidden + b.hidden,
     };
     *stats = FrameStats {
         draws: stats.draws + of_view.draws,

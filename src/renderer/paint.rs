@@ -5,6 +5,7 @@ use super::uniforms::frame_uniform;
 use super::{FrameState, FrameStats, PassFormat, RenderError, Renderer, check_size, frame_stats};
 use crate::frame::{PlanOptions, clip_from_origin};
 use crate::gpu::Identity;
+use crate::gpu::pipeline::DepthTarget;
 use crate::gpu_scene::GpuScene;
 use crate::passes::BackgroundPass;
 use crate::scene::View;
@@ -65,7 +66,9 @@ impl Renderer {
         check_size(device, view)?;
         let target = pass.forward_target(device, view)?;
         self.check_channel(device, scene, view, target.format)?;
-        let options = PlanOptions { samples: target.samples, culling: self.culling };
+        // A host's depth may be so coarse that what is behind is as near.
+        let culling = if target.depth == DepthTarget::OWN { self.culling } else { self.culling.but_hidden() };
+        let options = PlanOptions { samples: target.samples, culling };
         let visible = state.plan_frame((device, queue), scene, view, options)?;
         let panorama = self.panorama((device, queue), scene, view, (target, false), state)?;
         let mut uniform = frame_uniform(scene, view);

@@ -28,6 +28,7 @@ mod many_lights;
 mod memory;
 mod merge_reports;
 mod mutants;
+mod occlusion;
 mod packing;
 mod paths;
 mod report_fixture;

@@ -25,8 +25,8 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &Desk, stage: &Stage) {
     if let Some(stats) = &stage.stats {
         ui.label(format!("{} path, {} draws, {} triangles", stats.path.name(), stats.draws, stats.triangles));
         ui.label(format!(
-            "left out: {} of {} placements beside the picture, {} between samples",
-            stats.placements.outside, stats.placements.all, stats.placements.between_samples
+            "left out of {} placements: {} beside the picture, {} between samples, {} behind others",
+            stats.placements.all, stats.placements.outside, stats.placements.between_samples, stats.placements.hidden
         ));
         ui.label(format!("{} shaders, with no more than these features:", stats.pipelines.len()));
         for pipeline in stats.pipelines.iter() {
