@@ -16,7 +16,7 @@ use specula::gpu::formats::Precision;
 use specula::gpu::{Gpu, GpuOptions, GpuRequest};
 use specula::gpu_scene::GpuScene;
 use specula::renderer::Renderer;
-use specula::scene::patches::{Kind, Order, Sight, crowd, field, mixture, sheets, view};
+use specula::scene::patches::{Kind, Order, Sight, crowd, field, hull, mixture, sheets, view};
 use specula::scene::{Scene, View};
 use std::time::Instant;
 
@@ -51,6 +51,7 @@ fn main() -> Result<()> {
             ("the same, of 32 materials with 6 pipelines", sheets(Order::BackToFront, 32)),
         ],
     )?;
+    hidden(&gpu, wanted)?;
     let small = [("1 000 meshes of one material", mixture(1)), ("1 000 meshes of 6 pipelines", mixture(6))];
     compare(&gpu, wanted, Sight::Near, &small)?;
     for count in [10_000, 100_000] {
@@ -76,15 +77,40 @@ struct Wanted {
 
 /// Draws the scenes in turn and prints a row for each.
 fn compare(gpu: &Gpu, wanted: Wanted, sight: Sight, scenes: &[(&str, Scene)]) -> Result<()> {
+    let all: Vec<_> = scenes.iter().map(|(name, scene)| (*name, scene, Culling::On)).collect();
+    compare_culling(gpu, wanted, sight, &all)
+}
+
+/// What is hidden, drawn and left out.
+fn hidden(gpu: &Gpu, wanted: Wanted) -> Result<()> {
+    let [empty, full] = [hull(0), hull(10_000)];
+    let all = [
+        ("a closed sphere of 16 128 triangles", &empty, Culling::On),
+        ("and 10 000 patches inside of it", &full, Culling::On),
+        ("the same, what is hidden drawn too", &full, Culling::NotHidden),
+    ];
+    compare_culling(gpu, wanted, Sight::Near, &all)?;
+    // Not one of them hides another.
+    let side_by_side = field(10_000, false);
+    let all = [
+        ("10 000 instances of 100 triangles, none looked for behind others", &side_by_side, Culling::NotHidden),
+        ("the same, all looked for", &side_by_side, Culling::On),
+    ];
+    compare_culling(gpu, wanted, Sight::Far, &all)
+}
+
+fn compare_culling(gpu: &Gpu, wanted: Wanted, sight: Sight, scenes: &[(&str, &Scene, Culling)]) -> Result<()> {
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue);
     let options = CaptureOptions { samples: wanted.samples, precision: Precision::Half };
     let target = |_| CaptureTarget::new(gpu, &view(sight, wanted.side, 0), options);
     let targets: Vec<CaptureTarget> = scenes.iter().map(target).collect::<std::result::Result<_, _>>()?;
-    let upload = |(_, scene): &(&str, Scene)| renderer.upload(&gpu.device, &gpu.queue, scene, None);
+    let upload = |(_, scene, _): &(&str, &Scene, Culling)| renderer.upload(&gpu.device, &gpu.queue, scene, None);
     let mut uploaded: Vec<GpuScene> = scenes.iter().map(upload).collect::<std::result::Result<_, _>>()?;
     let mut times = vec![Vec::new(); scenes.len()];
     for round in 0..wanted.rounds + 2 {
-        for ((scene, target), times) in uploaded.iter_mut().zip(&targets).zip(&mut times) {
+        let frames = uploaded.iter_mut().zip(&targets).zip(&mut times).zip(scenes);
+        for (((scene, target), times), (.., culling)) in frames {
+            renderer.culling = *culling;
             let start = cpu_seconds();
             frame(gpu, &mut renderer, scene, &view(sight, wanted.side, round), target)?;
             times.push(cpu_seconds().zip(start).map(|(end, start)| 1e3 * (end - start)));
@@ -92,7 +118,7 @@ fn compare(gpu: &Gpu, wanted: Wanted, sight: Sight, scenes: &[(&str, Scene)]) ->
     }
     // The first frames compile.
     times.iter_mut().for_each(|times| drop(times.drain(..2)));
-    for ((name, _), of_scene) in scenes.iter().zip(&times) {
+    for ((name, ..), of_scene) in scenes.iter().zip(&times) {
         let ratios = of_scene.iter().zip(&times[0]).map(|(time, first)| Some((*time)? / (*first)?));
         let (ms, ratio) = (median(of_scene.iter().copied()), median(ratios));
         println!("| {name} | {0} x {0}, {1} | {ms:.1} | {ratio:.2} |", wanted.side, wanted.samples);
@@ -113,11 +139,13 @@ fn plan_times(rounds: usize) -> Result<()> {
     for (name, scene, sight) in [
         ("10 100 copies", crowd(100, 10_000, Kind::Copies), Sight::Near),
         ("10 001 meshes", crowd(100, 10_000, Kind::Meshes), Sight::Near),
+        ("10 000 patches inside of a sphere", hull(10_000), Sight::Near),
         ("100 000 copies", field(100_000, false), Sight::Far),
         ("100 000 copies, a quarter of them seen", field(100_000, false), Sight::Far),
     ] {
         let features = specula::shader::SceneFeatures::of(&scene);
-        let drawables = specula::frame::Drawables::new(&scene, features);
+        let mut drawables = specula::frame::Drawables::new(&scene, features);
+        drawables.find_occluders(&scene);
         let (mut planner, mut plan) = (Planner::default(), Default::default());
         let mut times = Vec::new();
         for round in 0..rounds + 2 {

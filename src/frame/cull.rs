@@ -11,7 +11,7 @@ pub(super) const ROUNDING: f32 = 16.0 * f32::EPSILON;
 
 /// Pixels by which the picture is taken to be larger on each side: points and lines are wider than their vertices, and
 /// rasterisers round places in the picture.
-const BORDER_PX: f64 = 2.0;
+pub(super) const BORDER_PX: f64 = 2.0;
 
 /// Vulkan lets a rasteriser round places in the picture to this, px; WebGPU's other backends to less.
 const SNAP_PX: f64 = 1.0 / 16.0;
@@ -87,6 +87,15 @@ const ONE_SAMPLE: [DVec2; 1] = [DVec2::splat(0.5)];
 const FOUR_SAMPLES: [DVec2; 4] =
     [DVec2::new(0.375, 0.125), DVec2::new(0.875, 0.375), DVec2::new(0.125, 0.625), DVec2::new(0.625, 0.875)];
 
+impl Shadow {
+    /// How much of a picture it takes up, of all.
+    pub(super) fn share(&self, size_px: UVec2) -> f32 {
+        let size = size_px.as_dvec2();
+        let part = (self.high.min(size) - self.low.max(DVec2::ZERO)).max(DVec2::ZERO) / size;
+        part.element_product() as f32
+    }
+}
+
 impl Sides {
     /// Whether all of a box is outside of one side.
     fn exclude(&self, (center, half): (Vec3, Vec3)) -> bool {
@@ -158,13 +167,17 @@ impl Frustum {
 
     /// Whether a box's shadow on the picture contains no sample, wherever in it the rasteriser rounds its vertices to.
     fn is_between_samples(&self, bounds: (Vec3, Vec3)) -> bool {
-        let (false, Some(extent)) = (self.samples.is_empty(), self.extent(bounds)) else { return false };
-        // Wider than a pixel, which has a sample.
-        let is_wide = |axis: usize| extent.half[axis] * f64::from(self.size_px[axis]) > extent.near_w;
-        if is_wide(0) || is_wide(1) {
-            return false;
+        let (false, Some(extents)) = (self.samples.is_empty(), self.extents(bounds)) else { return false };
+        let mut low = DVec2::ZERO;
+        let mut high = DVec2::ZERO;
+        for axis in 0..2 {
+            let extent = extents.of(axis);
+            if extent.half * f64::from(self.size_px[axis]) > extents.near_w {
+                // Wider than a pixel, which has a sample.
+                return false;
+            }
+            [low[axis], high[axis]] = self.px(axis, extents.over_w(extent));
         }
-        let (low, high) = extent.in_picture(self.size_px);
         let (low, high) = (low - SNAP_PX, high + SNAP_PX);
         // A sample lies at a whole number beside its place in the pixel.
         let is_inside = |&sample: &DVec2| (low - sample).ceil().cmple((high - sample).floor()).all();
@@ -173,53 +186,83 @@ impl Frustum {
 
     /// Where the fragments of what is in a box can be, if all of it is before the eye.
     pub(super) fn shadow(&self, bounds: (Vec3, Vec3)) -> Option<Shadow> {
-        let extent = self.extent(bounds)?;
-        let (low, high) = extent.in_picture(self.size_px);
-        Some(Shadow { low: low - BORDER_PX, high: high + BORDER_PX, nearest: extent.over_w(2)[1] })
+        let extents = self.extents(bounds)?;
+        let [[left, right], [top, bottom]] = [0, 1].map(|axis| self.px(axis, extents.over_w(extents.of(axis))));
+        let (low, high) = (DVec2::new(left, top), DVec2::new(right, bottom));
+        Some(Shadow { low, high, nearest: extents.over_w(extents.of(2))[1] })
     }
 
-    /// How much of the picture a box can cover, of all; 0 where that is not known.
-    pub(super) fn share(&self, bounds: (Vec3, Vec3)) -> f64 {
-        let size = self.size_px.as_dvec2();
-        let Some(extent) = self.extent(bounds) else { return 0.0 };
-        let (low, high) = extent.in_picture(self.size_px);
-        let part = (high.min(size) - low.max(DVec2::ZERO)).max(DVec2::ZERO) / size;
-        part.x * part.y
+    /// Tells `each` of every box in `range` that may take up more than this share of the picture, if all of it is before
+    /// the eye.
+    pub(super) fn large(&self, boxes: &Boxes, range: Range<usize>, share: f32, mut each: impl FnMut(usize)) {
+        let [x, y, w] = [0, 1, 3].map(|row| self.clip_from_origin.row(row).as_vec4());
+        let (size, toward) = (x.truncate().length() * y.truncate().length(), w.truncate().abs());
+        let mut start = range.start;
+        while start < range.end {
+            let end = range.end.min(start + RUN);
+            let [[cx, cy, cz], [hx, hy, hz]] = boxes.slices(start..end);
+            let mut is_large = [false; RUN];
+            for (i, is_large) in is_large.iter_mut().enumerate().take(end - start) {
+                let near = w.x * cx[i] + w.y * cy[i] + w.z * cz[i] + w.w
+                    - (toward.x * hx[i] + toward.y * hy[i] + toward.z * hz[i]);
+                let reach = hx[i] * hx[i] + hy[i] * hy[i] + hz[i] * hz[i];
+                *is_large = near > 0.0 && reach * size > share * near * near;
+            }
+            (start..end).zip(is_large).filter(|(_, is_large)| *is_large).for_each(|(index, _)| each(index));
+            start = end;
+        }
     }
 
-    fn extent(&self, (center, half): (Vec3, Vec3)) -> Option<Extent> {
-        let (c, h) = (center.as_dvec3(), half.as_dvec3());
-        let reach = (c.abs() + h).extend(1.0);
-        let [x, y, z, w] = [0, 1, 2, 3].map(|row| self.clip_from_origin.row(row));
-        let middle = |row: DVec4| row.truncate().dot(c) + row.w;
-        let half = |row: DVec4| row.truncate().abs().dot(h) + f64::from(ROUNDING) * row.abs().dot(reach);
-        let (near_w, far_w) = (middle(w) - half(w), middle(w) + half(w));
+    /// From the top or the left, of what is from one to another coordinate divided by w.
+    fn px(&self, axis: usize, [least, most]: [f64; 2]) -> [f64; 2] {
+        let size = f64::from(self.size_px[axis]);
+        // Rows count downward.
+        let ndc = if axis == 1 { [-most, -least] } else { [least, most] };
+        ndc.map(|ndc| 0.5 * (ndc + 1.0) * size)
+    }
+
+    /// `None` for a box that is not all before the eye.
+    fn extents(&self, (center, half): (Vec3, Vec3)) -> Option<Extents<'_>> {
+        let (center, half) = (center.as_dvec3(), half.as_dvec3());
+        let reach = (center.abs() + half).extend(1.0);
+        let none = Extents { clip_from_origin: &self.clip_from_origin, center, half, reach, near_w: 0.0, far_w: 0.0 };
+        let w = none.of(3);
+        let (near_w, far_w) = (w.middle - w.half, w.middle + w.half);
         // Also where it is no number.
-        (near_w > 0.0).then(|| Extent { middle: [x, y, z].map(middle), half: [x, y, z].map(half), near_w, far_w })
+        (near_w > 0.0).then_some(Extents { near_w, far_w, ..none })
     }
 }
 
-/// Between which clip coordinates a box is, with room for their rounding.
+/// Between which clip coordinates a box is, worked out when they are asked for.
 #[derive(Debug, Clone, Copy)]
-struct Extent {
-    middle: [f64; 3],
-    half: [f64; 3],
+struct Extents<'a> {
+    clip_from_origin: &'a DMat4,
+    center: DVec3,
+    half: DVec3,
+    reach: DVec4,
     near_w: f64,
     far_w: f64,
 }
 
-impl Extent {
-    /// The least and the most of a coordinate divided by w.
-    fn over_w(&self, axis: usize) -> [f64; 2] {
-        let (least, most) = (self.middle[axis] - self.half[axis], self.middle[axis] + self.half[axis]);
-        [(least / self.near_w).min(least / self.far_w), (most / self.near_w).max(most / self.far_w)]
+/// Of one clip coordinate.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    middle: f64,
+    half: f64,
+}
+
+impl Extents<'_> {
+    /// With room for rounding.
+    fn of(&self, row: usize) -> Extent {
+        let row = self.clip_from_origin.row(row);
+        let half = row.truncate().abs().dot(self.half) + f64::from(ROUNDING) * row.abs().dot(self.reach);
+        Extent { middle: row.truncate().dot(self.center) + row.w, half }
     }
 
-    /// The corners at the top left and at the bottom right, px.
-    fn in_picture(&self, size_px: UVec2) -> (DVec2, DVec2) {
-        let ([left, right], [bottom, top]) = (self.over_w(0), self.over_w(1));
-        let px = |x: f64, y: f64| 0.5 * (DVec2::new(x, -y) + 1.0) * size_px.as_dvec2();
-        (px(left, top), px(right, bottom))
+    /// The least and the most of a coordinate divided by w.
+    fn over_w(&self, Extent { middle, half }: Extent) -> [f64; 2] {
+        let (least, most) = (middle - half, middle + half);
+        [(least / self.near_w).min(least / self.far_w), (most / self.near_w).max(most / self.far_w)]
     }
 }
 

@@ -63,8 +63,8 @@ fn what_is_not_in_the_picture_is_not_drawn_and_counted() {
     let scene = scene_of(vec![Material::default(), Material { metallic: 0.0, ..Default::default() }], &places);
     let (drawables, plan) = plan_of(&scene, OPTIONS);
     assert_eq!(nodes(&drawables, &plan, &plan.opaque[0]), [0]);
-    assert_eq!(plan.placements, Culled { all: 4, outside: 3, between_samples: 0 });
-    assert_eq!(plan.drawables, Culled { all: 2, outside: 1, between_samples: 0 });
+    assert_eq!(plan.placements, Culled { all: 4, outside: 3, between_samples: 0, hidden: 0 });
+    assert_eq!(plan.drawables, Culled { all: 2, outside: 1, between_samples: 0, hidden: 0 });
     let text = plan.to_string();
     assert!(text.contains("placements: 1 of 4 drawn, 3 outside of the picture, 0 between its samples"), "{text}");
     assert!(text.contains("drawables: 1 of 2 drawn, 1 outside of the picture, 0 between its samples"), "{text}");
@@ -114,4 +114,41 @@ fn a_planner_that_has_planned_before_plans_the_same() {
         assert_eq!(other, turn % 2 == 0, "pipelines change with the view's choice of shaders only");
         assert_eq!(kept, plan(&drawables, features, &view, OPTIONS));
     }
+}
+
+/// Small balls in a large one, which is the first.
+fn balls_in_a_ball(material: Material) -> Scene {
+    let inside = (0..100).map(|i| {
+        let [x, y, z] = [i % 5, i / 5 % 5, i / 25].map(|step| 0.5 * f64::from(step) - 1.0);
+        (1, DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_scale(DVec3::splat(0.1)))
+    });
+    let around = (0, DMat4::from_scale(DVec3::splat(6.0)));
+    scene_of(vec![material, Material::default()], &std::iter::once(around).chain(inside).collect::<Vec<_>>())
+}
+
+fn hidden(scene: &Scene, view: &View, options: PlanOptions) -> u32 {
+    let features = SceneFeatures::of(scene);
+    let mut drawables = Drawables::new(scene, features);
+    drawables.find_occluders(scene);
+    plan(&drawables, features, view, options).placements.hidden
+}
+
+#[test]
+fn what_is_inside_of_something_opaque_is_hidden() {
+    let opaque = balls_in_a_ball(Material::default());
+    assert_eq!(hidden(&opaque, &view(), OPTIONS), 100);
+    assert_eq!(hidden(&opaque, &view(), PlanOptions { culling: Culling::NotHidden, ..OPTIONS }), 0);
+    // The edges of hidden triangles are seen in the wireframe, and what is hidden counts as overdraw.
+    for channel in [crate::scene::Channel::Wireframe, crate::scene::Channel::Overdraw] {
+        assert_eq!(hidden(&opaque, &View { channel: Some(channel), ..view() }, OPTIONS), 0);
+    }
+    for alpha_mode in [AlphaMode::Blend, AlphaMode::Mask { cutoff: 0.5 }] {
+        assert_eq!(hidden(&balls_in_a_ball(Material { alpha_mode, ..Default::default() }), &view(), OPTIONS), 0);
+    }
+    // From the inside its triangles face away; those of a double-sided one hide nothing before them.
+    let mut inside = view();
+    inside.camera.world_from_view.w_axis.z = 1.5;
+    assert_eq!(hidden(&opaque, &inside, OPTIONS), 0);
+    let both = balls_in_a_ball(Material { double_sided: true, ..Default::default() });
+    assert_eq!((hidden(&both, &view(), OPTIONS), hidden(&both, &inside, OPTIONS)), (100, 0));
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Background, Camera, Light, LightKind, Material, Mesh, MetalFresnel, Node, Primitive, Projection, Scene, Topology,
-    View, framing,
+    View, framing, shapes::sphere,
 };
 use glam::{DMat4, DVec3, UVec2, Vec3};
 
@@ -60,6 +60,20 @@ pub fn crowd(visible: usize, hidden: usize, kind: Kind) -> Scene {
             scene.meshes.push(Mesh { name: None, primitives: vec![patch(&[(1.0 + 1e-3 * i as f32, Vec3::ZERO)])] });
         }
         push(&mut scene, mesh, place, 0.8);
+    }
+    scene
+}
+
+/// A closed sphere of 16 128 triangles that has patches inside, out of sight.
+pub fn hull(inside: usize) -> Scene {
+    let mut scene = lit();
+    scene.meshes.push(Mesh { name: None, primitives: vec![sphere(1.0, 64, 0)] });
+    push(&mut scene, 1, DVec3::ZERO, 4.0);
+    let across = (inside as f64).cbrt().ceil().max(1.0) as usize;
+    for i in 0..inside {
+        let steps = [i % across, i / across % across, i / across / across];
+        let [x, y, z] = steps.map(|step| (step as f64 + 0.5) / across as f64 - 0.5);
+        push(&mut scene, 0, 4.0 * DVec3::new(x, y, z), 2.0 / across as f64);
     }
     scene
 }
@@ -194,6 +208,7 @@ mod tests {
         assert_eq!(instances(&crowd(100, 1000, Kind::Copies)), 1100);
         let meshes = crowd(100, 1000, Kind::Meshes);
         assert_eq!((instances(&meshes), meshes.meshes.len()), (1100, 1001));
+        assert_eq!(instances(&hull(1000)), 1001);
         assert_eq!(instances(&sheets(Order::BackToFront, 4)), 32);
         let mixture = mixture(200);
         assert_eq!((instances(&mixture), mixture.materials.len()), (1000, 200));

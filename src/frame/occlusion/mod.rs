@@ -8,9 +8,8 @@ mod occluders;
 mod raster;
 
 use super::boxes::rounding;
-use super::cull::Frustum;
+use super::cull::{BORDER_PX, Frustum, ROUNDING};
 use super::drawables::Drawables;
-use crate::frame::cull::ROUNDING;
 use cells::Cells;
 use glam::{DMat4, DVec4, Vec3};
 use raster::{Placed, Raster};
@@ -18,7 +17,7 @@ use raster::{Placed, Raster};
 pub use occluders::Occluders;
 
 /// A box that covers less of the picture than this hides too little to be drawn first.
-const LEAST_SHARE: f64 = 1.0 / 512.0;
+const LEAST_SHARE: f32 = 1.0 / 64.0;
 
 /// One triangle is drawn here for at least so many that may be spared.
 const SPARED_PER_DRAWN: usize = 8;
@@ -36,7 +35,10 @@ pub(super) struct Occlusion {
 /// A placement that may hide others.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    share: f64,
+    /// Of the picture.
+    share: f32,
+    /// As z / w.
+    nearest: f32,
     drawable: usize,
     placement: usize,
 }
@@ -54,7 +56,10 @@ impl Occlusion {
         if self.chosen.is_empty() {
             return;
         }
-        self.chosen.sort_unstable_by(|a, b| b.share.total_cmp(&a.share).then(a.placement.cmp(&b.placement)));
+        self.chosen.sort_unstable_by(|a, b| {
+            let order = b.share.total_cmp(&a.share).then(b.nearest.total_cmp(&a.nearest));
+            order.then(a.placement.cmp(&b.placement))
+        });
         self.cells.clear(frustum.size_px);
         for &Candidate { drawable, placement, .. } in &self.chosen {
             let count = drawables.occluders.triangles(drawable);
@@ -80,12 +85,14 @@ impl Occlusion {
             if drawables.occluders.get(index).is_none() {
                 continue;
             }
-            for placement in drawable.placements.clone() {
-                let share = frustum.share(drawables.placements.boxes.get(placement));
-                if share >= LEAST_SHARE {
-                    self.chosen.push(Candidate { share, drawable: index, placement });
+            let boxes = &drawables.placements.boxes;
+            frustum.large(boxes, drawable.placements.clone(), LEAST_SHARE, |placement| {
+                let Some(shadow) = frustum.shadow(boxes.get(placement)) else { return };
+                let (share, nearest) = (shadow.share(frustum.size_px), shadow.nearest as f32);
+                if share > LEAST_SHARE {
+                    self.chosen.push(Candidate { share, nearest, drawable: index, placement });
                 }
-            }
+            });
         }
         triangles
     }
@@ -96,7 +103,7 @@ impl Occlusion {
             return false;
         }
         let Some(shadow) = frustum.shadow(bounds) else { return false };
-        let touched = self.cells.touched(shadow.low, shadow.high);
+        let touched = self.cells.touched(shadow.low - BORDER_PX, shadow.high + BORDER_PX);
         touched.is_some_and(|touched| shadow.nearest < f64::from(self.cells.farthest(touched)))
     }
 }

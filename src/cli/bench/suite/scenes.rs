@@ -30,6 +30,7 @@ enum Content {
     Lights(u32),
     Field(usize),
     Crowd(usize),
+    Hull(usize),
     Sheets,
     Materials(usize),
 }
@@ -54,6 +55,8 @@ pub(super) const SCENES: &[SuiteScene] = &[
     scene("offscreen-0", "100 patches in the picture", (1024, 1), Content::Crowd(0)),
     scene("offscreen-10000", "and 10 000 beside it", (1024, 1), Content::Crowd(10_000)),
     scene("offscreen-100000", "and 100 000 beside it", (1024, 1), Content::Crowd(100_000)),
+    scene("hidden-0", "a closed sphere of 16 128 triangles", (1024, 1), Content::Hull(0)),
+    scene("hidden-10000", "10 000 patches inside of it", (1024, 1), Content::Hull(10_000)),
     scene("overdraw", "32 sheets one behind the other, listed from the back", (1024, 1), Content::Sheets),
     scene("materials-200", "1000 meshes of 200 materials with 6 pipelines", (1024, 1), Content::Materials(200)),
 ];
@@ -94,6 +97,7 @@ impl SuiteScene {
             }
             Content::Field(count) => (patches::field(count, false), patches::view(Sight::Far, self.side_px, 0)),
             Content::Crowd(beside) => near(patches::crowd(100, beside, Kind::Copies)),
+            Content::Hull(inside) => near(patches::hull(inside)),
             Content::Sheets => near(patches::sheets(Order::BackToFront, 1)),
             Content::Materials(count) => near(patches::mixture(count)),
         })
