@@ -8,6 +8,8 @@ pub mod cache;
 pub mod capture;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "cli")]
+mod clock;
 pub mod embed;
 pub mod frame;
 pub mod gpu;

@@ -18,7 +18,7 @@ mod uniforms;
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, plan};
 use crate::gpu::formats::{self, Precision};
-use crate::gpu::{Identity, LostFlag, Staging, Uploads};
+use crate::gpu::{Identity, LostFlag, PassClock, Staging, Uploads, timed};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, WhiteFurnace};
 use crate::passes::{
     BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget, DeferredPipelines, DeferredTarget,
@@ -251,6 +251,9 @@ impl Renderer {
     ) -> Result<FrameStats, RenderError> {
         self.check_device()?;
         check_size(device, view)?;
+        if let Some(clock) = &mut state.clock {
+            clock.begin();
+        }
         let forward_target = ForwardTarget::radiance(target.format, target.samples);
         self.check_channel(device, scene, view, target.format)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
@@ -271,7 +274,7 @@ impl Renderer {
             let (Some(geometry), None) = (&scene.pulled, target.pixel) else { return Err(RenderError::NotDeferrable) };
             let (plan, kept) = ((&state.plan, view), &mut state.deferred);
             let pass = self.deferred.prepare(device, &self.sources, (scene, geometry), plan, &into, kept)?;
-            pass.encode(encoder, scene, &frame_group, &into, |pass| {
+            pass.encode(encoder, scene, &frame_group, &into, &mut state.clock, |pass| {
                 if let Some(panorama) = &panorama {
                     panorama.draw(pass);
                 }
@@ -279,7 +282,7 @@ impl Renderer {
             RenderPath::Deferred
         } else {
             self.forward.prepare(device, &self.sources, scene, &state.plan, forward_target)?;
-            let mut pass = begin_forward(encoder, target, f64::from(coverage));
+            let mut pass = begin_forward((encoder, &mut state.clock), target, f64::from(coverage));
             if let Some(pixel) = target.pixel {
                 pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
             }
@@ -365,7 +368,7 @@ impl Renderer {
         let uniform = display_uniform(view);
         let uniform = (&uniform, &mut state.display);
         let pass = self.display.prepare((device, queue), &self.sources, features, format, radiance, uniform)?;
-        pass.encode(encoder, target);
+        pass.encode(encoder, target, &mut state.clock);
         state.was_displayed(view, radiance, target);
         Ok(())
     }
@@ -410,7 +413,7 @@ pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> Sha
 }
 
 fn begin_forward<'encoder>(
-    encoder: &'encoder mut wgpu::CommandEncoder,
+    (encoder, clock): (&'encoder mut wgpu::CommandEncoder, &mut Option<PassClock>),
     target: &RadianceTarget<'_>,
     coverage: f64,
 ) -> wgpu::RenderPass<'encoder> {
@@ -434,7 +437,7 @@ fn begin_forward<'encoder>(
             depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
             stencil_ops: None,
         }),
-        timestamp_writes: None,
+        timestamp_writes: timed(clock, "forward"),
         occlusion_query_set: None,
         multiview_mask: None,
     })

@@ -1,7 +1,7 @@
 //! What a render did, for `--stats` and `--json`.
 
-use super::clock::process_ms;
 use super::tier::TierStats;
+use crate::clock::process_ms;
 use crate::frame::Culled;
 use crate::gpu::Gpu;
 use serde::Serialize;

@@ -8,7 +8,7 @@ mod pipelines;
 
 use crate::frame::{Draw, FramePlan, clip_from_origin, rectangle_around};
 use crate::gpu::pipeline::PassError;
-use crate::gpu::{DeviceLost, filled_buffer};
+use crate::gpu::{DeviceLost, PassClock, filled_buffer, timed};
 use crate::gpu_scene::{GpuScene, PulledGeometry, entry};
 use crate::scene::View;
 use crate::shader::types::PulledDraw;
@@ -170,24 +170,26 @@ impl DeferredPass {
         scene: &GpuScene,
         frame_group: &wgpu::BindGroup,
         target: &DeferredTarget<'_>,
+        clock: &mut Option<PassClock>,
         behind: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
         let (clear, keep, discard) = (wgpu::LoadOp::Clear(0.0), wgpu::StoreOp::Store, wgpu::StoreOp::Discard);
         {
             let color = attachment(target.visibility, wgpu::Color::TRANSPARENT);
-            let mut pass = begin(encoder, "visibility", Some(color), depth_attachment(target.depth, clear, discard));
+            let depth = depth_attachment(target.depth, clear, discard);
+            let mut pass = begin((encoder, clock), "visibility", Some(color), depth);
             self.see(&mut pass, scene, frame_group);
         }
         {
-            let mut pass = begin(encoder, "covered", None, depth_attachment(target.covered, clear, keep));
+            let mut pass = begin((encoder, clock), "covered", None, depth_attachment(target.covered, clear, keep));
             pass.set_pipeline(&self.cover.0);
             pass.set_bind_group(0, &self.cover.1, &[]);
             pass.draw(0..3, 0..1);
         }
         let empty = wgpu::Color { a: f64::from(target.coverage), ..wgpu::Color::TRANSPARENT };
         let color = attachment(target.radiance, empty);
-        let mut pass =
-            begin(encoder, "deferred", Some(color), depth_attachment(target.covered, wgpu::LoadOp::Load, discard));
+        let depth = depth_attachment(target.covered, wgpu::LoadOp::Load, discard);
+        let mut pass = begin((encoder, clock), "deferred", Some(color), depth);
         self.shade(&mut pass, scene, frame_group, target);
         behind(&mut pass);
     }
@@ -247,7 +249,7 @@ fn depth_attachment(
 }
 
 fn begin<'encoder>(
-    encoder: &'encoder mut wgpu::CommandEncoder,
+    (encoder, clock): (&'encoder mut wgpu::CommandEncoder, &mut Option<PassClock>),
     label: &'static str,
     color: Option<wgpu::RenderPassColorAttachment<'_>>,
     depth: wgpu::RenderPassDepthStencilAttachment<'_>,
@@ -256,7 +258,7 @@ fn begin<'encoder>(
         label: Some(label),
         color_attachments: color.map(Some).as_slice(),
         depth_stencil_attachment: Some(depth),
-        timestamp_writes: None,
+        timestamp_writes: timed(clock, label),
         occlusion_query_set: None,
         multiview_mask: None,
     })

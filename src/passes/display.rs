@@ -1,8 +1,8 @@
 //! Scene radiance to display values: exposure, tone map, background colour, sRGB.
 
-use crate::gpu::KeptUniform;
 use crate::gpu::bindings::display_layout;
 use crate::gpu::pipeline::{FullscreenDepth, FullscreenTarget, PassError, fullscreen_pipeline};
+use crate::gpu::{KeptUniform, PassClock, timed};
 use crate::gpu_scene::entry;
 use crate::shader::types::DisplayUniform;
 use crate::shader::{Composed, DisplayFeatures, ShaderSources, create_module, display_module};
@@ -72,7 +72,12 @@ impl DisplayPipelines {
 
 impl DisplayPass {
     /// Overwrites all of `target`.
-    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        clock: &mut Option<PassClock>,
+    ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("display"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -82,7 +87,7 @@ impl DisplayPass {
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: None,
-            timestamp_writes: None,
+            timestamp_writes: timed(clock, "display"),
             occlusion_query_set: None,
             multiview_mask: None,
         });

@@ -3,7 +3,7 @@
 use super::RadianceTarget;
 use super::paint::Painting;
 use crate::frame::{Culling, FramePlan, PlanOptions, Planner};
-use crate::gpu::{DeviceLost, Identity, KeptUniform, write_buffer};
+use crate::gpu::{DeviceLost, Identity, KeptUniform, PassClock, write_buffer};
 use crate::gpu_scene::GpuScene;
 use crate::passes::{BackgroundSource, DeferredGroups};
 use crate::scene::View;
@@ -30,6 +30,8 @@ pub struct FrameState {
     pub(super) display: KeptUniform<wgpu::TextureView>,
     pub(super) deferred: Option<DeferredGroups>,
     pub(super) painting: Option<Painting>,
+    /// Times the passes of every frame, where it is wanted.
+    pub(crate) clock: Option<PassClock>,
     drawn: Option<Drawn>,
     /// The view that was displayed last, from which radiance and where.
     displayed: Option<(View, wgpu::TextureView, wgpu::TextureView)>,

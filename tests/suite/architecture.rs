@@ -43,6 +43,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     // What the shaders are held to: WGSL beside the truth, on a device.
     ("proof", &["bake", "gpu", "gpu_scene", "math", "progress", "reference", "renderer", "scene", "shader"]),
     // The program: everything.
+    ("clock", &[]),
     ("output", &[]),
     ("parallel", &[]),
     ("app", VIEWER),
@@ -55,6 +56,7 @@ const VIEWER: &[&str] = &[
     "bake",
     "cache",
     "capture",
+    "clock",
     "frame",
     "gpu",
     "gpu_scene",
@@ -77,6 +79,7 @@ const EVERYTHING: &[&str] = &[
     "cache",
     "capture",
     "cli",
+    "clock",
     "embed",
     "frame",
     "gpu",

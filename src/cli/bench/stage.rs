@@ -3,11 +3,11 @@
 use super::settings::Setting;
 use crate::bake::environment::BakeOptions;
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame, Wanted, record, submit};
-use crate::cli::clock::{FrameTimes, Timestamps, time_frame};
+use crate::cli::clock::{FrameTimes, time_frame, timestamps};
 use crate::cli::environment::{CacheArgs, bake_with};
 use crate::cli::error::CliError;
 use crate::cli::measure::FloorOf;
-use crate::gpu::{Gpu, Uploads};
+use crate::gpu::{Gpu, Timestamps, Uploads};
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
 use crate::renderer::{FrameStats, PathChoice, Renderer};
@@ -59,7 +59,7 @@ impl<'a> Stage<'a> {
             scene,
             cache,
             renderer,
-            timestamps: Timestamps::new(gpu),
+            timestamps: timestamps(gpu),
             uploaded: Vec::new(),
             motion: CameraMotion::Still,
             frames_drawn: 0,

@@ -3,11 +3,11 @@
 use super::kinds::{Fill, Tap};
 use super::probes::TEXTURE_SIDE;
 use crate::capture::CaptureError;
-use crate::cli::clock::{Basis, Timestamps, median, time_frame};
+use crate::cli::clock::{Basis, median, time_frame, timestamps};
 use crate::cli::error::CliError;
 use crate::gpu::bindings::background_layout;
 use crate::gpu::pipeline::{DepthTarget, FullscreenDepth, FullscreenTarget, fullscreen_pipeline};
-use crate::gpu::{Gpu, formats};
+use crate::gpu::{Gpu, Timestamps, formats};
 use crate::gpu_scene::entry;
 use crate::renderer::RenderError;
 use crate::shader::{Backdrop, ShaderSources, Slots, compose, create_module};
@@ -51,7 +51,7 @@ impl<'a> Apparatus<'a> {
         Self {
             gpu,
             basis,
-            timestamps: Timestamps::new(gpu),
+            timestamps: timestamps(gpu),
             layout: background_layout(&gpu.device, Backdrop::Sharp),
             sampler,
         }
