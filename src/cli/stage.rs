@@ -5,14 +5,14 @@ use super::error::CliError;
 use super::shot::Shot;
 use super::stats::Stopwatch;
 use super::subject::SubjectArgs;
-use crate::app::{in_units, picture};
+use crate::app::{in_units, light_furnace, picture};
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, CapturedFrame, Wanted, submit};
 use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::GpuScene;
 use crate::import::model_files;
 use crate::progress::Progress;
 use crate::renderer::{PathChoice, Renderer};
-use crate::scene::{EnvironmentMaps, RadianceImage, Scene, View};
+use crate::scene::{Channel, EnvironmentMaps, RadianceImage, Scene, View};
 use glam::UVec2;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -37,8 +37,18 @@ pub(super) struct Stage<'a> {
 struct Subject {
     scene: Scene,
     hash: String,
-    /// By whether suns are parted from the environment, and whether more than the forward path is wanted.
-    uploaded: Vec<((bool, bool), GpuScene)>,
+    uploaded: Vec<(Uploaded, GpuScene)>,
+}
+
+/// How a scene is on the device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Uploaded {
+    /// Suns are parted from the environment.
+    suns: bool,
+    /// More than the forward path can be taken.
+    paths: bool,
+    /// A white environment stands in for one that is missing.
+    white: bool,
 }
 
 impl<'a> Stage<'a> {
@@ -140,26 +150,29 @@ impl<'a> Stage<'a> {
     pub(super) fn upload(&mut self, shot: Shot<'_>, view: &View) -> Result<usize, CliError> {
         let paths = shot.frame.paths_on(self.gpu);
         self.renderer.set_paths(paths);
-        let key = (view.quality.parts_suns(), paths != PathChoice::Forward);
-        let (_, subject) = self.subject.as_ref().ok_or_else(nothing_is_loaded)?;
+        let (_, subject) = self.subject.as_mut().ok_or_else(nothing_is_loaded)?;
+        let white = view.channel == Some(Channel::Furnace) && subject.scene.lit_environment().is_none();
+        let key = Uploaded { suns: view.quality.parts_suns(), paths: paths != PathChoice::Forward, white };
         if let Some(known) = subject.uploaded.iter().position(|(other, _)| *other == key) {
             return Ok(known);
         }
-        let maps = self.maps(shot, view);
+        // Other pictures of the scene have its own light.
+        let own = subject.scene.environment.clone();
+        light_furnace(&mut subject.scene, view.channel);
+        let maps = self.maps(if white { "white" } else { shot.subject.environment_source() }, key.suns, view);
         let (_, subject) = self.subject.as_mut().ok_or_else(nothing_is_loaded)?;
-        let uploaded = self
-            .renderer
-            .upload(&self.gpu.device, &self.gpu.queue, &subject.scene, maps.as_deref())
-            .map_err(CaptureError::from)?;
-        subject.uploaded.push((key, uploaded));
+        let Gpu { device, queue, .. } = self.gpu;
+        let uploaded = self.renderer.upload(device, queue, &subject.scene, maps.as_deref());
+        subject.scene.environment = own;
+        subject.uploaded.push((key, uploaded.map_err(CaptureError::from)?));
         Ok(subject.uploaded.len() - 1)
     }
 
-    /// The prefiltered environment, where there is one.
-    fn maps(&mut self, shot: Shot<'_>, view: &View) -> Option<Rc<EnvironmentMaps>> {
+    /// The prefiltered environment of this name, where there is one.
+    fn maps(&mut self, source: &str, suns: bool, view: &View) -> Option<Rc<EnvironmentMaps>> {
         let (_, subject) = self.subject.as_ref()?;
         subject.scene.lit_environment()?;
-        let key = (shot.subject.environment_source().to_owned(), view.quality.parts_suns());
+        let key = (source.to_owned(), suns);
         if let Some((_, maps)) = self.maps.iter().find(|(other, _)| *other == key) {
             return Some(Rc::clone(maps));
         }

@@ -186,6 +186,27 @@ fn jobs_of_a_manifest_are_what_single_calls_draw() {
 }
 
 #[test]
+fn a_furnace_is_lit_where_other_pictures_are_not() {
+    let (guard, out) = folder();
+    let model = std::fs::canonicalize(MODEL).unwrap();
+    let job = |name: &str, more: &str| {
+        let model = model.display();
+        format!("{{\"model\": \"{model}\", \"output\": \"{name}\", \"size\": \"64x48\", \"env\": \"black\"{more}}}\n")
+    };
+    let furnace = ", \"debug-view\": \"furnace\"";
+    let jobs = [job("dark.png", ""), job("furnace.png", furnace), job("dark-again.png", "")];
+    let path = guard.path().join("jobs.jsonl");
+    std::fs::write(&path, jobs.concat()).unwrap();
+    assert_eq!(states(&done(&["--manifest", path.to_str().unwrap(), "-o", &out])), ["drawn"; 3]);
+    let single = format!("{out}/single.png");
+    done(&[MODEL, "-o", &single, "--size=64x48", "--env=black", "--debug-view=furnace"]);
+    let of_batch = |name: &str| open(&Path::new(&out).join(name));
+    assert_eq!(open(Path::new(&single)), of_batch("furnace.png"));
+    assert_eq!(of_batch("dark.png"), of_batch("dark-again.png"));
+    assert!(of_batch("furnace.png").pixels().any(|pixel| pixel.0[0] > 200), "nothing is lit");
+}
+
+#[test]
 fn a_bad_job_costs_itself_alone() {
     let (_guard, jobs, out) = manifest();
     let text = std::fs::read_to_string(&jobs).unwrap();
