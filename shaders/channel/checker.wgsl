@@ -24,3 +24,9 @@ fn checker(uv: vec2f) -> vec3f {
     let square = (floor(place - CHECKER_SQUARES * floor(uv)) + 0.5) / CHECKER_SQUARES;
     return vec3f(square, 1.0 - 0.5 * (square.x + square.y)) * mix(0.35, 1.0, bright);
 }
+
+// Where there are no coordinates: grey stripes, in pixels, which no chart looks like.
+fn hatched(pixel: vec2f) -> vec3f {
+    let along = (pixel.x + pixel.y) / 8.0;
+    return vec3f(select(0.35, 0.5, along - floor(along) < 0.5));
+}

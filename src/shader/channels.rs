@@ -71,7 +71,11 @@ pub(super) fn channels(features: &ForwardFeatures) -> String {
         let value = expression(input, &features.material, &features.vertex);
         let _ = writeln!(text, "        case {}u: {{\n            return {value};\n        }}", input as u32);
     }
-    let checker = features.vertex.uv_sets().next().map_or("vec3f(0.5)".into(), |set| format!("checker(v.uv_{set})"));
+    let checker = features
+        .vertex
+        .uv_sets()
+        .next()
+        .map_or("hatched(v.position_in_clip.xy)".into(), |set| format!("checker(v.uv_{set})"));
     let _ = writeln!(text, "        case CHANNEL_UV_CHECKER: {{\n            return {checker};\n        }}");
     text.push_str(
         "        case CHANNEL_DRAWN: {\n            return vec3f(1.0);\n        }\n        \
