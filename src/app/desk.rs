@@ -1,18 +1,23 @@
 //! What lies before the user: a model, the light on it, and what is being fetched.
 
-use super::folder;
+use super::folder::{self, Kind};
 use super::loading::{LoadedLight, LoadedModel, Loading, Part, Wake, Wanted, WantedLight};
 use super::panel::Inspected;
-use super::shown::{Shown, view_of};
+use super::recent::Recent;
+use super::saving;
+use super::shaders::{Shaders, is_of_shaders};
+use super::shown::{Shown, is_file, view_of};
 use super::stage::Stage;
 use super::state::ViewerState;
 use super::truth::Truth;
 use super::viewer::{Effect, Viewer};
-use super::watch::Watch;
+use super::watch::ModelWatch;
+use crate::cache::EnvironmentCache;
 use crate::capture::CaptureError;
 use crate::gpu_scene::TextureLevels;
-use crate::output;
 use crate::scene::{Channel, Scene, View};
+use crate::shader::ShaderSources;
+use std::convert::identity;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -36,8 +41,16 @@ struct Before {
     shown: Option<Shown>,
 }
 
-/// Models that are remembered while the window is open.
-const RECENT: usize = 12;
+/// What a desk has beside its state.
+#[derive(Debug, Clone, Default)]
+pub(super) struct DeskOptions {
+    /// Whether files are read again when they change.
+    pub(super) watch: bool,
+    /// Where prefiltered panoramas and the list of recent files are kept.
+    pub(super) cache: Option<PathBuf>,
+    /// Shaders in place of those that are built in.
+    pub(super) shaders: Option<PathBuf>,
+}
 
 /// Models, light and jobs around a [`Viewer`].
 pub(super) struct Desk {
@@ -46,8 +59,8 @@ pub(super) struct Desk {
     pub(super) texts: Texts,
     /// The material that the panel shows.
     pub(super) material: usize,
-    /// Models that were open, the last one first.
-    pub(super) recent: Vec<PathBuf>,
+    /// What was open.
+    pub(super) recent: Recent,
     pub(super) inspected: Inspected,
     pub(super) loading: Option<Loading>,
     light: Option<LoadedLight>,
@@ -56,9 +69,15 @@ pub(super) struct Desk {
     /// What was there before the sketch that is shown.
     before: Option<Before>,
     pub(super) truth: Option<Truth>,
+    /// A state that was opened, until its model is there.
+    coming: Option<ViewerState>,
+    /// What is to be said as soon as there is something to see.
+    note: Option<String>,
+    pub(super) shaders: Option<Shaders>,
+    cache: Option<EnvironmentCache>,
     /// Whether a model is read again when its files change.
     watches: bool,
-    watch: Option<Watch>,
+    watch: Option<ModelWatch>,
     /// Of the device, once that is open.
     pub(super) max_side: Arc<OnceLock<u32>>,
     wake: Wake,
@@ -66,20 +85,27 @@ pub(super) struct Desk {
 
 impl Desk {
     /// Begins to fetch what `state` names.
-    pub(super) fn new(state: ViewerState, watches: bool, wake: Wake) -> Self {
+    pub(super) fn new(state: ViewerState, options: DeskOptions, wake: Wake) -> Self {
         let (viewer, max_side) = (Viewer::new(state), Arc::default());
+        let DeskOptions { watch: watches, cache: folder, shaders } = options;
+        let (recent, problem) = Recent::read(folder.as_ref().map(|folder| folder.join("recent.json")));
+        let (shaders, unwatched) = shaders.map(|folder| Shaders::new(folder, watches, Arc::clone(&wake))).unzip();
         let mut desk = Self {
             viewer,
             about: About::default(),
             texts: Texts::default(),
             material: 0,
-            recent: Vec::new(),
+            recent,
             inspected: Inspected::default(),
             loading: None,
             light: None,
             arrived: None,
             before: None,
             truth: None,
+            coming: None,
+            note: problem.or(unwatched.flatten()),
+            shaders,
+            cache: folder.as_deref().map(EnvironmentCache::below),
             watches,
             watch: None,
             max_side,
@@ -87,24 +113,39 @@ impl Desk {
         };
         match desk.viewer.state.model.clone() {
             Some(model) => desk.open(&model),
-            None => desk.fetch(None),
+            None => {
+                desk.viewer.interface.message = desk.note.take();
+                desk.fetch(None);
+            }
         }
         desk
     }
 
-    /// Begins to read a model, or the first one of a folder. What is open stays until it is there.
+    /// Begins to read a model, the first one of a folder, or the one of a state. What is open stays until it is there.
     pub(super) fn open(&mut self, path: &Path) {
-        match folder::model_of(path) {
+        self.coming = None;
+        self.forget(Kind::Model, path);
+        let opened = if folder::is_state(path) { self.open_state(path) } else { folder::model_of(path) };
+        match opened {
             Ok(model) => self.fetch(Some(model)),
             Err(problem) => self.say(problem),
         }
+    }
+
+    /// The model of a state, which is shown as the state has it when it is there.
+    fn open_state(&mut self, path: &Path) -> Result<PathBuf, String> {
+        let state = ViewerState::read(path).map_err(|error| error.to_string())?;
+        let model = state.model.clone().ok_or_else(|| format!("{}: it names no model", path.display()))?;
+        self.coming = Some(state);
+        Ok(model)
     }
 
     fn fetch(&mut self, model: Option<PathBuf>) {
         let light = self.wanted_light();
         let light = (!self.is_lit_by(&light)).then_some(light);
         let wanted = Wanted { model, light };
-        self.loading = Some(Loading::start(wanted, Arc::clone(&self.max_side), Arc::clone(&self.wake)));
+        let (max_side, wake) = (Arc::clone(&self.max_side), Arc::clone(&self.wake));
+        self.loading = Some(Loading::start(wanted, max_side, self.cache.clone(), wake));
     }
 
     fn wanted_light(&self) -> WantedLight {
@@ -152,14 +193,21 @@ impl Desk {
                 self.say("nothing is saved before textures and light are there".into());
             }
             Effect::Screenshot => {
-                let path = self.free_name();
+                let path = saving::free_name(self.viewer.state.model.as_deref(), "png");
                 if let Some(stage) = stage {
-                    match self.screenshot(stage, &path) {
-                        Ok(()) => self.say(format!("saved {} and its state, .json", path.display())),
-                        Err(problem) => self.say(problem),
-                    }
+                    let saved = self.screenshot(stage, &path);
+                    self.say(
+                        saved.map_or_else(identity, |()| format!("saved {} and its state, .json", path.display())),
+                    );
                 }
             }
+            Effect::SaveState => {
+                let state = &self.viewer.state;
+                let path = saving::free_name(state.model.as_deref(), "json");
+                let saved = saving::state(state, &path);
+                self.say(saved.map_or_else(identity, |()| format!("saved the state as {}", path.display())));
+            }
+            Effect::Fullscreen => {}
             Effect::Quit => return false,
         }
         true
@@ -174,7 +222,7 @@ impl Desk {
             }
             self.take(parts, stage);
         }
-        if self.watch.as_ref().is_some_and(Watch::has_changed) {
+        if self.watch.as_ref().is_some_and(ModelWatch::has_changed) {
             self.effect(Effect::Reload, None);
         }
         let wanted = self.wanted_light();
@@ -188,17 +236,37 @@ impl Desk {
         {
             self.fail(&error);
         }
+        self.try_shaders(stage);
+    }
+
+    /// Puts shaders to use that are others than before, if a picture can be made with them.
+    fn try_shaders(&mut self, stage: &mut Stage) {
+        let view = self.view();
+        let (Some(shaders), Some(view)) = (&mut self.shaders, view) else { return };
+        let Some(sources) = shaders.changed() else { return };
+        let tried = stage.try_shaders(sources.clone(), &view);
+        shaders.tried(sources, &tried);
+        // What was made with the others.
+        (self.truth, self.inspected) = (None, Inspected::default());
     }
 
     fn take(&mut self, parts: Vec<Part>, stage: &mut Stage) {
         let mut is_relit = false;
         for part in parts {
             match part {
-                Part::RoughLight(light) | Part::Light(Ok(light)) => {
+                Part::RoughLight(light) => {
+                    self.light = Some(light);
+                    is_relit = true;
+                }
+                Part::Light(Ok(light)) => {
+                    if is_file(&light.wanted.source) {
+                        self.remember(Kind::Panorama, Path::new(&light.wanted.source));
+                    }
                     self.light = Some(light);
                     is_relit = true;
                 }
                 Part::Light(Err(problem)) => {
+                    self.forget(Kind::Panorama, Path::new(&self.viewer.state.environment.source.clone()));
                     self.say(problem);
                     let before = self.light.as_ref().map(|light| light.wanted.source.clone());
                     self.viewer.state.environment.source = before.unwrap_or_else(|| "neutral".into());
@@ -206,7 +274,7 @@ impl Desk {
                 Part::Sketch(model) => self.arrived = Some((model, true)),
                 Part::Model(Ok(model)) => self.arrived = Some((model, false)),
                 Part::Model(Err(problem)) => {
-                    self.arrived = None;
+                    (self.arrived, self.coming) = (None, None);
                     self.bring_back(stage);
                     self.say(problem);
                 }
@@ -235,6 +303,11 @@ impl Desk {
                 self.fail(&error);
             }
         }
+    }
+
+    /// Whether a model is on its way.
+    pub(super) fn is_reading_model(&self) -> bool {
+        self.loading.as_ref().is_some_and(|loading| loading.missing_model().is_some())
     }
 
     /// Whether this model is shown, and with its images.
@@ -275,18 +348,14 @@ impl Desk {
         let LoadedModel { path, scene, warnings, extensions_used, levels } = model;
         let (shown, opened) = self.place(scene, &path, (levels, stage));
         self.before = None;
-        let mut message = None;
-        if self.watches && self.watch.as_ref().is_none_or(|watch| watch.model != path) {
-            match Watch::new(&path, Arc::clone(&self.wake)) {
-                Ok(watch) => self.watch = Some(watch),
-                Err(problem) => message = Some(problem),
-            }
+        self.viewer.interface.message = self.note.take();
+        if self.watches
+            && let Err(problem) = ModelWatch::follow(&mut self.watch, &path, Arc::clone(&self.wake))
+        {
+            self.say(problem);
         }
-        self.recent.retain(|other| *other != path);
-        self.recent.insert(0, path);
-        self.recent.truncate(RECENT);
+        self.remember(Kind::Model, &path);
         self.about = About { warnings, extensions_used };
-        self.viewer.interface.message = message;
         self.viewer.shown = Some(shown);
         if let Err(error) = opened {
             self.fail(&error);
@@ -301,6 +370,9 @@ impl Desk {
         (levels, stage): (TextureLevels, &mut Stage),
     ) -> (Shown, Result<(), CaptureError>) {
         let state = &mut self.viewer.state;
+        if let Some(coming) = self.coming.take_if(|coming| coming.model.as_deref() == Some(path)) {
+            *state = ViewerState { size_px: state.size_px, ..coming };
+        }
         // Read again, or named by a state that was opened: what was changed stays.
         if state.model.as_deref() != Some(path) {
             *state = state.for_model(path);
@@ -327,6 +399,34 @@ impl Desk {
         }
     }
 
+    /// Keeps in mind that a file was opened.
+    fn remember(&mut self, kind: Kind, path: &Path) {
+        if let Err(problem) = self.recent.opened(kind, path) {
+            self.say(problem);
+        }
+    }
+
+    /// No longer offers a file that is not there any more.
+    fn forget(&mut self, kind: Kind, path: &Path) {
+        if !path.exists()
+            && let Err(problem) = self.recent.forget(kind, path)
+        {
+            self.say(problem);
+        }
+    }
+
+    /// What is done about an error of a frame. Whether it was not known yet.
+    pub(super) fn frame_failed(&mut self, error: &CaptureError, stage: &mut Stage) -> bool {
+        match &mut self.shaders {
+            Some(shaders) if is_of_shaders(error) && shaders.are_in_use() => {
+                shaders.give_up(error);
+                stage.use_shaders(shaders.good.clone());
+                true
+            }
+            _ => self.fail(error),
+        }
+    }
+
     /// Tells of an error, here and on stderr. Whether it was not known yet.
     pub(super) fn fail(&mut self, error: &CaptureError) -> bool {
         let message = error.to_string();
@@ -336,6 +436,11 @@ impl Desk {
             self.say(message);
         }
         is_new
+    }
+
+    /// Those that have made pictures.
+    pub(super) fn good_shaders(&self) -> ShaderSources {
+        self.shaders.as_ref().map_or_else(ShaderSources::default, |shaders| shaders.good.clone())
     }
 
     /// Keeps the truth beside the picture, where that is wanted.
@@ -364,27 +469,7 @@ impl Desk {
     /// # Errors
     /// When there is no picture yet, or a file cannot be written: one line for people.
     pub(super) fn screenshot(&self, stage: &Stage, path: &Path) -> Result<(), String> {
-        let pixels = stage.pixels().map_err(|error| error.to_string())?;
-        let pixels = pixels.filter(|_| self.viewer.shown.is_some()).ok_or("there is no picture yet")?;
-        let mut state = self.viewer.state.clone();
-        let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        state.model = state.model.as_deref().map(absolute);
-        if super::shown::is_file(&state.environment.source) {
-            state.environment.source = absolute(Path::new(&state.environment.source)).to_string_lossy().into_owned();
-        }
-        let [width, height] = state.size_px;
-        let png = output::png(width, height, &pixels)?;
-        let state_path = path.with_extension("json");
-        output::write(path, &png).map_err(|error| error.to_string())?;
-        output::write(&state_path, state.to_json().as_bytes()).map_err(|error| error.to_string())
-    }
-
-    /// A name for a picture that no file has yet, in the current folder.
-    fn free_name(&self) -> PathBuf {
-        let model = self.viewer.state.model.as_deref().and_then(Path::file_stem);
-        let stem = model.map_or("specula".into(), |stem| stem.to_string_lossy().into_owned());
-        let names = (1..).map(|number| PathBuf::from(format!("{stem}-{number}.png")));
-        let is_free = |name: &PathBuf| !name.exists() && !name.with_extension("json").exists();
-        names.into_iter().find(is_free).unwrap_or_default()
+        self.viewer.shown.as_ref().ok_or("there is no picture yet")?;
+        saving::picture(stage, &self.viewer.state, path)
     }
 }

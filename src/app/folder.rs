@@ -20,6 +20,11 @@ impl Kind {
     }
 }
 
+/// Whether a file is a state that the viewer has saved, by its name.
+pub fn is_state(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
 /// What can be gone to or opened from a folder, each by name.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Listing {

@@ -11,6 +11,9 @@ use std::time::Duration;
 /// Places of named parts of the panel, in pixels: left, top, width and height.
 type Places = BTreeMap<String, [f32; 4]>;
 
+/// Where a frame takes a second, as on a software driver that compiles a shader, a click must not count as held.
+const LONGEST_CLICK_S: f64 = 30.0;
+
 /// What lies over the picture, and its state.
 pub(super) struct Gui {
     pub(super) context: egui::Context,
@@ -35,6 +38,7 @@ impl Gui {
     pub(super) fn new(gpu: &Gpu, window: &Window, format: wgpu::TextureFormat) -> Self {
         let context = egui::Context::default();
         context.set_theme(egui::Theme::Dark);
+        context.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK_S);
         // The same bits for the same state: no dithering.
         let options = egui_wgpu::RendererOptions { dithering: false, ..Default::default() };
         let scale = window.scale_factor() as f32;

@@ -4,6 +4,9 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
+/// Pixels that a touch pad scrolls for a line of a wheel.
+pub(super) const PIXELS_PER_LINE: f64 = 40.0;
+
 /// One thing that happened. Places are in pixels of the window, from its top left corner.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]

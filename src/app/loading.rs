@@ -117,7 +117,12 @@ impl Progress for Shared {
 
 impl Loading {
     /// Starts to read. `max_side` is the largest texture of the device, once that is open.
-    pub(super) fn start(wanted: Wanted, max_side: Arc<OnceLock<u32>>, wake: Wake) -> Self {
+    pub(super) fn start(
+        wanted: Wanted,
+        max_side: Arc<OnceLock<u32>>,
+        cache: Option<EnvironmentCache>,
+        wake: Wake,
+    ) -> Self {
         let progress = Arc::new(Shared { stage: Mutex::default(), wake: Arc::clone(&wake) });
         let (send, parts) = channel();
         let (seen, is_seen) = channel();
@@ -132,7 +137,7 @@ impl Loading {
                 // Whatever the answer, it is time to go on.
                 let _ = is_seen.recv_timeout(UNTIL_SEEN);
             };
-            load(&job, (&max_side, until_seen), &*shared, &give);
+            load(&job, (&max_side, until_seen), cache.as_ref(), (&*shared, &give));
         });
         Self { missing: wanted.clone(), wanted, progress, parts, seen }
     }
@@ -188,8 +193,8 @@ impl Loading {
 fn load(
     wanted: &Wanted,
     (max_side, until_seen): (&OnceLock<u32>, impl FnOnce() + Send),
-    progress: &dyn Progress,
-    give: &(dyn Fn(Part) + Sync),
+    cache: Option<&EnvironmentCache>,
+    (progress, give): (&dyn Progress, &(dyn Fn(Part) + Sync)),
 ) {
     let line = |error: ImportError| error.to_string();
     beside(
@@ -200,8 +205,7 @@ fn load(
         },
         || {
             if let Some(light) = &wanted.light {
-                let cache = EnvironmentCache::of_user();
-                give(Part::Light(load_light(light, (cache.as_ref(), until_seen), progress, give).map_err(line)));
+                give(Part::Light(load_light(light, (cache, until_seen), progress, give).map_err(line)));
             }
         },
     );

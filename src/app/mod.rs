@@ -22,13 +22,21 @@ mod named;
 #[cfg(feature = "view")]
 mod panel;
 #[cfg(feature = "view")]
+mod recent;
+#[cfg(feature = "view")]
 mod recording;
+#[cfg(feature = "view")]
+mod saving;
+#[cfg(feature = "view")]
+mod shaders;
 mod shown;
 #[cfg(feature = "view")]
 mod stage;
 mod state;
 #[cfg(feature = "view")]
 mod surface;
+#[cfg(feature = "view")]
+mod timing;
 #[cfg(feature = "view")]
 mod translate;
 #[cfg(feature = "view")]
@@ -42,6 +50,10 @@ mod window;
 
 pub use channel_picture::{in_units, picture};
 pub use edit::{AlphaEdit, MaterialEdit};
+#[cfg(feature = "view")]
+pub use folder::is_state;
+#[cfg(feature = "view")]
+pub use shaders::read as shaders_in;
 pub use shown::{Shown, environment_image, is_file, light_furnace, view_of};
 pub use state::{BackgroundState, CameraState, EnvironmentState, Look, SCHEMA, StateError, ViewerState};
 #[cfg(feature = "view")]

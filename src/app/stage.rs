@@ -4,15 +4,16 @@ use super::channel_picture::{in_units, picture};
 use super::edit::MaterialEdit;
 use super::shown::Shown;
 use super::state::ViewerState;
+use super::timing::{FrameTiming, Timer};
 use crate::capture::{CaptureError, CaptureOptions, CaptureTarget, Wanted, capture_pixel, redraw, submit};
 use crate::gpu::{Gpu, Uploads, formats};
 use crate::gpu_scene::{GpuScene, TextureLevels};
 use crate::renderer::{FrameStats, PathChoice, Renderer};
 use crate::scene::{EnvironmentMaps, RadianceImage, View};
+use crate::shader::ShaderSources;
 use glam::{UVec2, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// What of a state is part of the uploaded scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,9 +51,8 @@ pub(super) struct Stage {
     painted: Option<Painted>,
     /// Frames drawn so far.
     pub(super) frames: u64,
-    /// How long the last frame took, from its plan until the device was done, milliseconds. Only of frames that were
-    /// waited for.
-    pub(super) frame_ms: Option<f64>,
+    /// Of the last frame, where that was timed.
+    pub(super) timing: Option<FrameTiming>,
     /// Counts what was put on the device: another number, another scene.
     pub(super) version: u64,
 }
@@ -65,10 +65,9 @@ struct Painted {
 }
 
 impl Stage {
-    pub(super) fn new(gpu: Gpu) -> Self {
-        let paths = PathChoice::for_device(gpu.info.device_type);
+    pub(super) fn new(gpu: Gpu, shaders: ShaderSources) -> Self {
         Self {
-            renderer: Renderer::new(&gpu.device, &gpu.queue).with_uploads(Uploads::Bounded).with_paths(paths),
+            renderer: renderer(&gpu, shaders),
             gpu,
             uploaded: None,
             stats: None,
@@ -78,7 +77,7 @@ impl Stage {
             size_px: [0; 2],
             painted: None,
             frames: 0,
-            frame_ms: None,
+            timing: None,
             version: 0,
         }
     }
@@ -100,6 +99,27 @@ impl Stage {
         let uploaded = self.renderer.upload_with(device, queue, &shown.scene, levels, self.maps.as_deref())?;
         (self.uploaded, self.applied) = (Some(uploaded), Some(Applied::of(state)));
         Ok(())
+    }
+
+    /// Draws with other shaders from now on, if they can draw this view.
+    pub(super) fn try_shaders(&mut self, shaders: ShaderSources, view: &View) -> Result<(), CaptureError> {
+        let before = std::mem::replace(&mut self.renderer, renderer(&self.gpu, shaders));
+        (self.target, self.painted) = (None, None);
+        // Errors of the driver come with the wait.
+        let tried = self.draw(view, false).and_then(|()| Ok(self.gpu.wait()?));
+        if tried.is_err() {
+            self.renderer = before;
+            (self.target, self.painted) = (None, None);
+        }
+        self.version += 1;
+        tried
+    }
+
+    /// Draws with other shaders from now on.
+    pub(super) fn use_shaders(&mut self, shaders: ShaderSources) {
+        self.renderer = renderer(&self.gpu, shaders);
+        (self.target, self.painted) = (None, None);
+        self.version += 1;
     }
 
     /// Takes the scene off the device.
@@ -150,22 +170,44 @@ impl Stage {
             Some(target) => target,
             None => CaptureTarget::new(&self.gpu, view, CaptureOptions::default())?,
         };
-        let (began, before) = (Instant::now(), self.frames);
-        let mut drawn = self.draw_into(view, &target);
-        self.target = Some(target);
-        if timed && self.frames > before {
-            drawn = drawn.and_then(|()| Ok(self.gpu.wait()?));
-            self.frame_ms = Some(1e3 * began.elapsed().as_secs_f64());
+        if timed && self.timing.is_none() {
+            // What is shown already is drawn once more, to be timed.
+            target.state().forget();
+            self.painted = None;
         }
+        let mut timer = timed.then(|| Timer::start(&self.gpu, &target));
+        let before = self.frames;
+        let mut drawn = self.draw_into(view, &target, &mut timer);
+        match timer {
+            Some(timer) if self.frames > before => {
+                drawn = drawn.and_then(|()| {
+                    self.timing = Some(timer.stop(&self.gpu, &target)?);
+                    Ok(())
+                });
+            }
+            Some(_) => {}
+            None => {
+                self.timing = None;
+                target.state().clock = None;
+            }
+        }
+        self.target = Some(target);
         drawn
     }
 
-    fn draw_into(&mut self, view: &View, target: &CaptureTarget) -> Result<(), CaptureError> {
+    fn draw_into(
+        &mut self,
+        view: &View,
+        target: &CaptureTarget,
+        timer: &mut Option<Timer>,
+    ) -> Result<(), CaptureError> {
         let Some(uploaded) = &mut self.uploaded else { return Ok(()) };
         let (gpu, renderer) = (&self.gpu, &mut self.renderer);
+        let mut submitted = || timer.iter_mut().for_each(Timer::submitted);
         let Some(channel) = view.channel else {
             self.painted = None;
             if let Some(stats) = redraw(gpu, renderer, uploaded, view, target)? {
+                submitted();
                 self.stats = Some(stats);
                 self.frames += 1;
             }
@@ -176,6 +218,7 @@ impl Stage {
         }
         let wanted = Wanted { radiance: true, display: false };
         let pending = submit(gpu, renderer, uploaded, view, target, wanted)?;
+        submitted();
         self.stats = Some(pending.stats.clone());
         self.frames += 1;
         if let Some(image) = pending.wait(gpu)?.radiance {
@@ -218,6 +261,11 @@ impl Stage {
         let target = self.target.as_ref().filter(|_| self.uploaded.is_some());
         target.map(|target| target.read_display(&self.gpu)).transpose()
     }
+}
+
+fn renderer(gpu: &Gpu, shaders: ShaderSources) -> Renderer {
+    let paths = PathChoice::for_device(gpu.info.device_type);
+    Renderer::with_shaders(&gpu.device, &gpu.queue, shaders).with_uploads(Uploads::Bounded).with_paths(paths)
 }
 
 /// A picture in memory, RGBA8 from the top left, as a texture that can be presented.

@@ -2,7 +2,7 @@
 
 use super::camera::Pose;
 use super::folder::{Kind, Listing};
-use super::input::{Button, Held, InputEvent};
+use super::input::{Button, Held, InputEvent, PIXELS_PER_LINE};
 use super::keys::{self, Action};
 use super::named;
 use super::shown::{GREY, Shown, is_file};
@@ -36,6 +36,9 @@ pub(super) enum Effect {
     },
     Reload,
     Screenshot,
+    /// The state alone.
+    SaveState,
+    Fullscreen,
     Quit,
 }
 
@@ -45,6 +48,7 @@ pub(super) struct Interface {
     pub panel: bool,
     pub help: bool,
     pub statistics: bool,
+    pub axes: bool,
     pub inspector: bool,
     pub truth: bool,
     /// Where the truth begins, as a share of the width.
@@ -64,6 +68,7 @@ impl Default for Interface {
             panel: false,
             help: false,
             statistics: false,
+            axes: false,
             inspector: false,
             truth: false,
             split: 0.5,
@@ -138,6 +143,9 @@ impl Viewer {
             InputEvent::PointerLeft => self.held.pointer_px = None,
             InputEvent::Button { button, pressed: true } if !claims.pointer => self.press(*button, at_s),
             InputEvent::Button { button, pressed: false } => self.release(*button),
+            InputEvent::Wheel { x, y } if !claims.pointer && self.held.modifiers.shift => {
+                self.pan(PIXELS_PER_LINE * DVec2::new(*x, *y));
+            }
             InputEvent::Wheel { y, .. } if !claims.pointer => self.zoom(ZOOM_PER_LINE.powf(*y)),
             InputEvent::Pinch { factor } if !claims.pointer && *factor > 0.0 => self.zoom(1.0 / factor),
             InputEvent::Modifiers(modifiers) => self.held.modifiers = *modifiers,
@@ -217,6 +225,13 @@ impl Viewer {
         }
     }
 
+    fn pan(&mut self, drag_px: DVec2) {
+        let size_px = self.state.size_px();
+        if let Some(shown) = &self.shown {
+            self.state.camera = self.state.camera.panned(&shown.around, drag_px, size_px);
+        }
+    }
+
     /// Looks at the surface that a pixel shows, if it shows one.
     fn look_at(&mut self, pixel: DVec2, closer: f64) {
         let Some(shown) = &self.shown else { return };
@@ -251,6 +266,7 @@ impl Viewer {
             Action::Help => toggle(&mut interface.help),
             Action::Panel => toggle(&mut interface.panel),
             Action::Statistics => toggle(&mut interface.statistics),
+            Action::Axes => toggle(&mut interface.axes),
             Action::Inspector => toggle(&mut interface.inspector),
             Action::Truth => toggle(&mut interface.truth),
             Action::Fly => toggle(&mut interface.fly),
@@ -264,6 +280,8 @@ impl Viewer {
             Action::Neighbour { backward } => return vec![Effect::Neighbour { backward }],
             Action::Reload => return vec![Effect::Reload],
             Action::Screenshot => return vec![Effect::Screenshot],
+            Action::SaveState => return vec![Effect::SaveState],
+            Action::Fullscreen => return vec![Effect::Fullscreen],
             Action::Quit => return vec![Effect::Quit],
             _ => self.change(action),
         }

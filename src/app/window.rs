@@ -1,6 +1,6 @@
 //! The window: events in, pictures out. It draws when something has changed, and sleeps otherwise.
 
-use super::desk::Desk;
+use super::desk::{Desk, DeskOptions};
 use super::gui::{Gui, GuiFrame};
 use super::input::{InputEvent, Recorded};
 use super::panel;
@@ -8,20 +8,21 @@ use super::recording::{Player, Recorder};
 use super::stage::Stage;
 use super::state::ViewerState;
 use super::surface::Screen;
-use super::translate::translate;
+use super::translate::{Fingers, translate};
+use super::viewer::Effect;
 use crate::capture::CaptureError;
 use crate::gpu::{Gpu, GpuError, GpuOptions, GpuRequest};
 use crate::passes::{PresentPass, Presented};
 use crate::renderer::RenderError;
 use crate::shader::ShaderSources;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
-use winit::window::{Window, WindowId};
+use winit::window::{Fullscreen, Window, WindowId};
 
 /// Behind what is not covered, display values.
 const BEHIND: [f32; 3] = [0.16; 3];
@@ -38,8 +39,12 @@ pub struct ViewOptions {
     /// What is shown first; `model` may name a folder.
     pub state: ViewerState,
     pub request: GpuRequest,
-    /// Whether a model is read again when its files change.
+    /// Whether a model and the shaders are read again when their files change.
     pub watch: bool,
+    /// A folder of shader files in place of those that are built in.
+    pub shaders: Option<PathBuf>,
+    /// The folder below which prefiltered panoramas and the list of recent files are kept; without, nothing is.
+    pub cache: Option<PathBuf>,
     /// Where what the user does is written down.
     pub record: Option<PathBuf>,
     /// What is done in place of a user; then the window is closed.
@@ -78,14 +83,17 @@ pub fn run(options: ViewOptions) -> Result<(), ViewError> {
     // A window that is gone needs no waking.
     let wake = Arc::new(move || proxy.send_event(()).unwrap_or_default());
     let recorder = options.record.as_deref().map(Recorder::create).transpose()?;
+    let of_desk = DeskOptions { watch: options.watch, cache: options.cache, shaders: options.shaders };
     let mut app = App {
-        desk: Desk::new(options.state, options.watch, wake),
+        desk: Desk::new(options.state, of_desk, wake),
         request: options.request,
         recorder,
         player: options.replay.map(Player::new),
         screenshot_at_end: options.screenshot_at_end,
         began: Instant::now(),
         open: None,
+        fingers: Fingers::default(),
+        titled: None,
         stale: true,
         due: None,
         passed: None,
@@ -114,6 +122,9 @@ struct App {
     screenshot_at_end: Option<PathBuf>,
     began: Instant,
     open: Option<Open>,
+    fingers: Fingers,
+    /// The model that the title of the window names.
+    titled: Option<PathBuf>,
     /// Something may look different than it is on the screen.
     stale: bool,
     /// When it will, if nothing else happens.
@@ -124,7 +135,11 @@ struct App {
 }
 
 impl Open {
-    fn new(event_loop: &ActiveEventLoop, window: Arc<Window>, request: &GpuRequest) -> Result<Self, ViewError> {
+    fn new(
+        event_loop: &ActiveEventLoop,
+        window: Arc<Window>,
+        (request, shaders): (&GpuRequest, ShaderSources),
+    ) -> Result<Self, ViewError> {
         let display = Box::new(event_loop.owned_display_handle());
         let (gpu, surface) = Gpu::open_for_window(request, GpuOptions::default(), display, Arc::clone(&window))?;
         let screen = Screen::new(&gpu, Arc::clone(&window), surface)?;
@@ -132,7 +147,7 @@ impl Open {
         let present = PresentPass::new(&gpu.device, &ShaderSources::default(), screen.format);
         let present = present.map_err(|error| CaptureError::from(RenderError::from(error)))?;
         let blank = super::stage::upload_picture(&gpu, [1, 1], &[0; 4]);
-        Ok(Self { window, screen, stage: Stage::new(gpu), gui, present, blank })
+        Ok(Self { window, screen, stage: Stage::new(gpu, shaders), gui, present, blank })
     }
 
     /// Shows the picture with the panel over it, and beyond a share of its width another picture.
@@ -205,8 +220,12 @@ impl App {
         self.refresh();
     }
 
-    fn do_effects(&mut self, event_loop: &ActiveEventLoop, effects: Vec<super::viewer::Effect>) {
+    fn do_effects(&mut self, event_loop: &ActiveEventLoop, effects: Vec<Effect>) {
         for effect in effects {
+            if let (Effect::Fullscreen, Some(open)) = (&effect, &self.open) {
+                let whole = open.window.fullscreen().is_none().then_some(Fullscreen::Borderless(None));
+                open.window.set_fullscreen(whole);
+            }
             let stage = self.open.as_ref().map(|open| &open.stage);
             if !self.desk.effect(effect, stage) {
                 self.end(event_loop);
@@ -242,7 +261,16 @@ impl App {
         });
         // What the panel has changed is seen at once.
         self.desk.turn(&mut open.stage);
+        if self.titled != self.desk.viewer.state.model {
+            self.titled.clone_from(&self.desk.viewer.state.model);
+            open.window.set_title(&title(self.titled.as_deref()));
+        }
+        let before = open.stage.frames;
         let (drawn, split) = draw_picture(&mut self.desk, &mut open.stage);
+        if open.stage.timing.is_some() && open.stage.frames > before {
+            // The panel was laid out before its times were known.
+            self.due = Some(Instant::now());
+        }
         let asked = ask_shaders(&mut self.desk, &mut open.stage);
         if asked.as_ref().is_ok_and(|is_new| *is_new) {
             self.due = Some(Instant::now());
@@ -255,7 +283,7 @@ impl App {
                 return self.recover(event_loop);
             }
             // The next frame says so; that it fails like this one changes nothing any more.
-            if self.desk.fail(&error) {
+            if self.desk.frame_failed(&error, &mut open.stage) {
                 self.due = Some(Instant::now());
             }
         }
@@ -269,7 +297,7 @@ impl App {
     /// Opens a device again after one was lost, and puts the scene on it.
     fn recover(&mut self, event_loop: &ActiveEventLoop) {
         let Some(Open { window, .. }) = self.open.take() else { return };
-        match Open::new(event_loop, window, &self.request) {
+        match Open::new(event_loop, window, (&self.request, self.desk.good_shaders())) {
             Ok(mut open) => {
                 self.desk.move_to(&mut open.stage);
                 self.open = Some(open);
@@ -368,6 +396,12 @@ impl App {
     }
 }
 
+/// Of the window in which a model is open.
+fn title(model: Option<&Path>) -> String {
+    let name = model.and_then(Path::file_name).map(|name| name.to_string_lossy());
+    name.map_or("Specula".into(), |name| format!("{name} - Specula"))
+}
+
 /// Draws what the state asks for. What is shown beyond a share of the width, and that share, where there is something.
 fn draw_picture(desk: &mut Desk, stage: &mut Stage) -> (Result<(), CaptureError>, Option<(wgpu::TextureView, f64)>) {
     let Some(view) = desk.view() else { return (Ok(()), None) };
@@ -395,7 +429,7 @@ impl ApplicationHandler for App {
             Ok(window) => Arc::new(window),
             Err(error) => return self.fail(event_loop, ViewError::NoWindow(error.to_string())),
         };
-        match Open::new(event_loop, window, &self.request) {
+        match Open::new(event_loop, window, (&self.request, self.desk.good_shaders())) {
             Ok(open) => {
                 // Whoever waits for it goes on.
                 let _ = self.desk.max_side.set(open.stage.gpu.device.limits().max_texture_dimension_2d);
@@ -431,7 +465,10 @@ impl ApplicationHandler for App {
                     self.refresh();
                 }
             }
-            event => translate(&event).into_iter().for_each(|event| self.happened(event_loop, &event)),
+            event => {
+                let events = translate(&event, &mut self.fingers);
+                events.iter().for_each(|event| self.happened(event_loop, event));
+            }
         }
     }
 

@@ -15,11 +15,18 @@ use crate::bake::environment::{self, BakeOptions};
 use crate::progress::Progress;
 use crate::scene::{EnvironmentImage, EnvironmentMaps};
 use key::Key;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use store::Store;
 
 /// Bytes of files that a cache keeps unless told otherwise: more than fifty panoramas of 1024 x 512.
 pub const DEFAULT_LIMIT_BYTES: u64 = 512 << 20;
+
+/// Where what can be made anew is kept for whoever runs this process: `SPECULA_CACHE_DIR`, or else `specula` where the
+/// system keeps caches: `$XDG_CACHE_HOME` or `~/.cache`, `~/Library/Caches`, `%LOCALAPPDATA%`. `None` where the environment
+/// names none of them.
+pub fn user_folder() -> Option<PathBuf> {
+    folder::of_user(std::env::consts::OS, |name| std::env::var_os(name))
+}
 
 /// A folder with prefiltered environments. Threads and processes may share it.
 #[derive(Debug, Clone)]
@@ -45,12 +52,14 @@ impl EnvironmentCache {
         Self { store: Store { folder: folder.into(), limit_bytes } }
     }
 
-    /// The cache of whoever runs this process, of [`DEFAULT_LIMIT_BYTES`]: below `SPECULA_CACHE_DIR`, or else where the
-    /// system keeps caches: `$XDG_CACHE_HOME` or `~/.cache`, `~/Library/Caches`, `%LOCALAPPDATA%`. `None` where the
-    /// environment names none of them.
+    /// The cache of whoever runs this process, in its place below [`user_folder`].
     pub fn of_user() -> Option<Self> {
-        let folder = folder::of_user(std::env::consts::OS, |name| std::env::var_os(name))?;
-        Some(Self::in_folder(folder.join("environments"), DEFAULT_LIMIT_BYTES))
+        user_folder().map(|folder| Self::below(&folder))
+    }
+
+    /// The cache that has its place below a folder for all that a user's programs keep, of [`DEFAULT_LIMIT_BYTES`].
+    pub fn below(folder: &Path) -> Self {
+        Self::in_folder(folder.join("environments"), DEFAULT_LIMIT_BYTES)
     }
 
     /// The maps of [`environment::bake`], if there is a file of them.

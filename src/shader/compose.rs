@@ -19,6 +19,8 @@ pub struct Composed {
     pub text: String,
     /// For each line of `text`: the file (or `<slot>`) and the line number there, from 1.
     origins: Vec<(String, usize)>,
+    /// Whether files of it may be others than those that are built in.
+    is_changed: bool,
 }
 
 /// Why a module could not be made. A fault of this crate, not of its input.
@@ -43,7 +45,7 @@ pub fn compose(sources: &ShaderSources, root: &str, slots: &Slots) -> Result<Com
     })?;
     let mut composer = Composer::new(sources, slots);
     composer.append(root, text)?;
-    Ok(Composed { text: composer.text, origins: composer.origins })
+    Ok(Composed { text: composer.text, origins: composer.origins, is_changed: sources.are_changed() })
 }
 
 struct Composer<'a> {
@@ -121,13 +123,32 @@ impl Composed {
 
     /// Parses the text; an error names the file and line that it came from.
     pub fn parse(&self) -> Result<naga::Module, ShaderError> {
-        naga::front::wgsl::parse_str(&self.text).map_err(|error| {
-            let at = error.location(&self.text).map_or(0, |location| location.line_number as usize);
-            let (file, line) = self.origin(at).unwrap_or(("(composed)", at));
+        let module = naga::front::wgsl::parse_str(&self.text).map_err(|error| {
             let message = error.emit_to_string(&self.text);
-            let file = file.to_owned();
-            ShaderError::Wgsl { file, line, message: message.lines().next().unwrap_or_default().to_owned() }
+            self.error_at(error.location(&self.text), message.lines().next().unwrap_or_default().to_owned())
+        })?;
+        // wgpu does the same, and tells no line: whoever works on a shader wants to know it.
+        if self.is_changed {
+            self.validate(&module)?;
+        }
+        Ok(module)
+    }
+
+    fn validate(&self, module: &naga::Module) -> Result<(), ShaderError> {
+        let (flags, capabilities) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all());
+        let valid = naga::valid::Validator::new(flags, capabilities).validate(module);
+        valid.map(drop).map_err(|error| {
+            let reasons =
+                std::iter::successors(Some(error.as_inner() as &dyn std::error::Error), |error| error.source());
+            let message = reasons.map(ToString::to_string).collect::<Vec<_>>().join(": ");
+            self.error_at(error.location(&self.text), message)
         })
+    }
+
+    fn error_at(&self, location: Option<naga::SourceLocation>, message: String) -> ShaderError {
+        let at = location.map_or(0, |location| location.line_number as usize);
+        let (file, line) = self.origin(at).unwrap_or(("(composed)", at));
+        ShaderError::Wgsl { file: file.to_owned(), line, message }
     }
 }
 

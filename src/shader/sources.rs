@@ -172,6 +172,11 @@ impl ShaderSources {
         self.replaced.insert(path.to_owned(), text);
     }
 
+    /// Whether a file is another than the one that is built in.
+    pub fn are_changed(&self) -> bool {
+        self.replaced.iter().any(|(path, text)| !SOURCES.contains(&(path.as_str(), text.as_str())))
+    }
+
     /// The text of a file.
     pub fn get(&self, path: &str) -> Option<&str> {
         let embedded = || SOURCES.iter().find(|(name, _)| *name == path).map(|(_, text)| *text);

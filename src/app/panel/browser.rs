@@ -46,7 +46,9 @@ pub(super) fn show(ui: &egui::Ui, desk: &mut Desk, effects: &mut Vec<Effect>) {
             }
         });
         ui.label(listing.folder.display().to_string());
-        ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        // Otherwise it would stay as low as the folder before was.
+        let files = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        files.auto_shrink([false, true]).show(ui, |ui| {
             if let (Some(parent), true) = (listing.folder.parent(), button(ui, "..", "browser/..")) {
                 chosen = Some(Chosen::Folder(parent.to_owned()));
             }

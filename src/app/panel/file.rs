@@ -1,6 +1,6 @@
 //! The model that is open, and another one by its path.
 
-use super::browser;
+use super::{browser, recent};
 use crate::app::desk::Desk;
 use crate::app::folder::Kind;
 use crate::app::gui::name_place;
@@ -43,16 +43,5 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, effects: &mut Vec<Effect>
             }
         }
     });
-    let recent: Vec<PathBuf> = desk.recent.iter().skip(1).cloned().collect();
-    if !recent.is_empty() {
-        ui.menu_button("recent", |ui| {
-            for path in recent {
-                let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                    effects.push(Effect::Open(path));
-                    ui.close();
-                }
-            }
-        });
-    }
+    effects.extend(recent::menu(ui, desk, Kind::Model).map(Effect::Open));
 }

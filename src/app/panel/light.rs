@@ -1,6 +1,6 @@
 //! Light from around, and the lights of the file.
 
-use super::{browser, rows};
+use super::{browser, recent, rows};
 use crate::app::desk::Desk;
 use crate::app::folder::Kind;
 use crate::app::gui::name_place;
@@ -32,11 +32,16 @@ pub(super) fn environment(ui: &mut egui::Ui, desk: &mut Desk) {
             environment.source = desk.texts.panorama.trim().to_owned();
         }
     });
-    let browse = ui.button("look for a panorama");
-    name_place(&browse, "environment/browse");
-    if browse.clicked() {
-        browser::open(desk, Kind::Panorama);
-    }
+    ui.horizontal(|ui| {
+        let browse = ui.button("look for a panorama");
+        name_place(&browse, "environment/browse");
+        if browse.clicked() {
+            browser::open(desk, Kind::Panorama);
+        }
+        if let Some(path) = recent::menu(ui, desk, Kind::Panorama) {
+            desk.viewer.state.environment.source = path.to_string_lossy().into_owned();
+        }
+    });
     let environment = &mut desk.viewer.state.environment;
     rows::number(ui, ("rotation, degrees", "environment/rotation"), &mut environment.rotation_deg, 0.0..=360.0);
     rows::factor(ui, ("intensity", "environment/intensity"), &mut environment.intensity, 0.001..=100.0);

@@ -7,6 +7,7 @@ use crate::app::gui::name_place;
 use crate::app::keys::Action;
 use crate::app::shown::GREY;
 use crate::app::state::BackgroundState;
+use crate::scene::{Channel, Input, Scene};
 
 pub(super) fn picture(ui: &mut egui::Ui, desk: &mut Desk) {
     let look = &mut desk.viewer.state.look;
@@ -14,10 +15,28 @@ pub(super) fn picture(ui: &mut egui::Ui, desk: &mut Desk) {
     rows::choice(ui, ("tone map", "look/tone-map"), &mut look.tone_map);
     rows::choice(ui, ("quality", "look/quality"), &mut look.quality);
     rows::choice(ui, ("debug view", "look/debug-view"), &mut look.debug_view);
+    if let (Some(Channel::UvChecker | Channel::Input(Input::Uv)), Some(shown)) = (look.debug_view, &desk.viewer.shown) {
+        without_coordinates(ui, &shown.scene);
+    }
     rows::choice(ui, ("geometry factor", "look/geometry"), &mut look.geometry);
     rows::switch(ui, ("energy compensation", "look/energy"), &mut look.energy_compensation);
     background(ui, &mut look.background);
     rows::number(ui, ("background blur", "look/background-blur"), &mut look.background_blur, 0.0..=1.0);
+}
+
+/// What a chart of texture coordinates does not show.
+fn without_coordinates(ui: &mut egui::Ui, scene: &Scene) {
+    let reads =
+        |material: usize| scene.materials.get(material).is_some_and(|material| material.textures().next().is_some());
+    let primitives = || scene.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let without = primitives().filter(|primitive| primitive.uvs.is_empty() || !reads(primitive.material)).count();
+    if without > 0 {
+        let text = ui.weak(format!(
+            "{without} of {} primitives have no texture coordinates, or no texture that reads them",
+            primitives().count()
+        ));
+        name_place(&text, "look/without-coordinates");
+    }
 }
 
 fn background(ui: &mut egui::Ui, background: &mut BackgroundState) {

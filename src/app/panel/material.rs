@@ -102,12 +102,14 @@ fn alpha(ui: &mut egui::Ui, edit: &mut MaterialEdit) -> bool {
         AlphaEdit::Mask { .. } => "mask",
         AlphaEdit::Blend => "blend",
     };
-    ComboBox::from_label("alpha mode").selected_text(name(edit.alpha)).show_ui(ui, |ui| {
+    let combo = ComboBox::from_label("alpha mode").selected_text(name(edit.alpha)).show_ui(ui, |ui| {
         let cutoff = if let AlphaEdit::Mask { cutoff } = edit.alpha { cutoff } else { 0.5 };
         for choice in [AlphaEdit::Opaque, AlphaEdit::Mask { cutoff }, AlphaEdit::Blend] {
-            ui.selectable_value(&mut edit.alpha, choice, name(choice));
+            let row = ui.selectable_value(&mut edit.alpha, choice, name(choice));
+            name_place(&row, format!("material/alpha-mode/{}", name(choice)));
         }
     });
+    name_place(&combo.response, "material/alpha-mode");
     if let AlphaEdit::Mask { cutoff } = &mut edit.alpha {
         rows::number(ui, ("cutoff", "material/cutoff"), cutoff, 0.0..=1.0);
     }

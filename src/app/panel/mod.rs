@@ -1,14 +1,15 @@
 //! What lies over the picture.
 
 mod browser;
-mod certificate;
 mod file;
 mod inspector;
 mod light;
 mod look;
 mod material;
 mod overlay;
+mod recent;
 mod rows;
+mod statistics;
 mod tree;
 
 pub(super) use inspector::Inspected;
@@ -26,11 +27,13 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> Vec<Eff
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| side(ui, desk, stage, &mut effects));
         });
     }
+    recent::welcome(ui, desk, &mut effects);
     overlay::progress(ui, desk);
     overlay::message(ui, desk);
     overlay::truth(ui, desk);
+    overlay::axes(ui, desk);
     inspector::show(ui, desk, stage);
-    overlay::statistics(ui, desk, stage);
+    statistics::show(ui, desk, stage);
     overlay::help(ui, desk);
     browser::show(ui, desk, &mut effects);
     effects
@@ -45,5 +48,5 @@ fn side(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage, effects: &mut Vec<Eff
     rows::part(ui, "Lights", false, |ui| light::lights(ui, desk));
     rows::part(ui, "Scene", false, |ui| tree::show(ui, desk));
     rows::part(ui, "Materials", true, |ui| material::show(ui, desk));
-    rows::part(ui, "What the scene uses", false, |ui| certificate::show(ui, desk, stage));
+    rows::part(ui, "Statistics", false, |ui| statistics::part(ui, desk, stage));
 }

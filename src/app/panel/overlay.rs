@@ -3,9 +3,9 @@
 use crate::app::desk::Desk;
 use crate::app::gui::name_place;
 use crate::app::keys;
-use crate::app::stage::Stage;
 use crate::app::truth::{Figures, Truth};
-use egui::{Align2, Area, Frame, Grid, Id, ProgressBar, RichText, ScrollArea, vec2};
+use egui::{Align2, Area, Color32, FontId, Frame, Grid, Id, ProgressBar, RichText, ScrollArea, Stroke, vec2};
+use glam::DVec3;
 
 /// Something small that floats at a side of the window.
 pub(super) fn float<R>(ui: &egui::Ui, name: &str, at: Align2, content: impl FnOnce(&mut egui::Ui) -> R) -> R {
@@ -30,18 +30,28 @@ pub(super) fn progress(ui: &egui::Ui, desk: &Desk) {
     });
 }
 
-/// What the viewer has to say.
+/// What the viewer has to say, and what is wrong with shaders that are worked on, for as long as it is.
 pub(super) fn message(ui: &egui::Ui, desk: &mut Desk) {
-    let Some(message) = desk.viewer.interface.message.clone() else { return };
+    let message = desk.viewer.interface.message.as_ref();
+    let of_shaders = desk.shaders.as_ref().and_then(|shaders| shaders.problem.as_ref());
+    if message.or(of_shaders).is_none() {
+        return;
+    }
     let closed = float(ui, "message", Align2::CENTER_TOP, |ui| {
-        ui.horizontal(|ui| {
-            ui.set_max_width(640.0);
-            ui.label(message);
-            let button = ui.small_button("close");
-            name_place(&button, "message/close");
-            button.clicked()
-        })
-        .inner
+        ui.set_max_width(640.0);
+        if let Some(problem) = of_shaders {
+            let text = ui.colored_label(ui.visuals().error_fg_color, problem);
+            name_place(&text, "message/shaders");
+        }
+        let row = message.map(|message| {
+            ui.horizontal(|ui| {
+                ui.label(message);
+                let button = ui.small_button("close");
+                name_place(&button, "message/close");
+                button.clicked()
+            })
+        });
+        row.is_some_and(|row| row.inner)
     });
     if closed {
         desk.viewer.interface.message = None;
@@ -68,6 +78,34 @@ pub(super) fn help(ui: &egui::Ui, desk: &Desk) {
     });
 }
 
+/// Half the width of the axes, points.
+const AXES: f32 = 36.0;
+
+/// Where the axes of the world point, at the side that the panel leaves free.
+pub(super) fn axes(ui: &egui::Ui, desk: &Desk) {
+    let (true, Some(view)) = (desk.viewer.interface.axes, desk.view()) else { return };
+    let from_world = view.camera.world_from_view.inverse();
+    // The inspector has the corner.
+    let at = if desk.viewer.interface.inspector { Align2::LEFT_CENTER } else { Align2::LEFT_TOP };
+    float(ui, "axes", at, |ui| {
+        let (area, _) = ui.allocate_exact_size(vec2(2.4 * AXES, 2.4 * AXES), egui::Sense::hover());
+        let axis = |direction: DVec3, name, color| (from_world.transform_vector3(direction), name, color);
+        let mut axes = [
+            axis(DVec3::X, "X", Color32::from_rgb(230, 80, 80)),
+            axis(DVec3::Y, "Y", Color32::from_rgb(90, 200, 90)),
+            axis(DVec3::Z, "Z", Color32::from_rgb(90, 140, 250)),
+        ];
+        // The nearest last.
+        axes.sort_by(|(a, ..), (b, ..)| a.z.total_cmp(&b.z));
+        for (way, name, color) in axes {
+            let tip = area.center() + AXES * vec2(way.x as f32, -way.y as f32);
+            ui.painter().line_segment([area.center(), tip], Stroke::new(2.0, color));
+            let beyond = area.center() + 1.15 * (tip - area.center());
+            ui.painter().text(beyond, Align2::CENTER_CENTER, name, FontId::proportional(11.0), color);
+        }
+    });
+}
+
 /// How far the picture is from the truth beside it.
 pub(super) fn truth(ui: &egui::Ui, desk: &mut Desk) {
     if !desk.viewer.interface.truth {
@@ -86,22 +124,5 @@ pub(super) fn truth(ui: &egui::Ui, desk: &mut Desk) {
         ui.label(format!("right: reference, {samples} samples, {:.2} % noise", 100.0 * noise));
         let switch = ui.checkbox(errors, "errors as colours, white from 10 %");
         name_place(&switch, "truth/errors");
-    });
-}
-
-/// What the last frame consisted of.
-pub(super) fn statistics(ui: &egui::Ui, desk: &Desk, stage: &Stage) {
-    if !desk.viewer.interface.statistics {
-        return;
-    }
-    let Some(stats) = &stage.stats else { return };
-    let [width, height] = desk.viewer.state.size_px;
-    float(ui, "statistics", Align2::LEFT_BOTTOM, |ui| {
-        ui.label(stage.gpu.description());
-        ui.label(format!("{width} x {height}, {} path, frame {}", stats.path.name(), stage.frames));
-        if let Some(milliseconds) = stage.frame_ms {
-            ui.label(format!("{milliseconds:.1} ms for the last frame that was timed"));
-        }
-        ui.label(format!("{} draws, {} triangles, {} pipelines", stats.draws, stats.triangles, stats.pipelines.len()));
     });
 }

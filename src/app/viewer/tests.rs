@@ -62,6 +62,26 @@ fn drags_turn_move_and_zoom() {
 }
 
 #[test]
+fn touch_pads_zoom_and_move() {
+    let home = orbit(&viewer());
+    let after = |events: &[InputEvent]| {
+        let mut viewer = viewer();
+        feed(&mut viewer, &[&[pointer(200.0, 150.0)], events].concat());
+        orbit(&viewer)
+    };
+    let pinched = after(&[InputEvent::Pinch { factor: 2.0 }]);
+    assert!((pinched.distance_m / home.distance_m - 0.5).abs() < 1e-12);
+    assert!(after(&[InputEvent::Wheel { x: 0.0, y: -1.0 }]).distance_m > home.distance_m);
+    let shift = InputEvent::Modifiers(Modifiers { shift: true, ..Modifiers::default() });
+    let moved = after(&[shift, InputEvent::Wheel { x: 1.0, y: -0.5 }]);
+    // As far as a drag over the same pixels.
+    let button = |pressed| button(Button::Middle, pressed);
+    let dragged = after(&[button(true), pointer(240.0, 130.0), button(false)]);
+    assert!((moved.target() - dragged.target()).length() < 1e-9, "{moved:?} {dragged:?}");
+    assert_eq!((moved.distance_m, moved.theta_rad), (home.distance_m, home.theta_rad));
+}
+
+#[test]
 fn clicks_do_not_turn_and_double_clicks_focus() {
     let mut viewer = viewer();
     let home = orbit(&viewer);

@@ -1,6 +1,7 @@
 //! An X server without a screen, and the program in a window of it.
 
 use crate::support::program;
+use serde_json::json;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -75,16 +76,49 @@ impl Screen {
         let mut command = program();
         command.arg("view").args(arguments).current_dir(self.folder.path());
         command.env("DISPLAY", &self.display).env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
-        command.env("XDG_RUNTIME_DIR", self.folder.path());
+        command.env("XDG_RUNTIME_DIR", self.folder.path()).env("SPECULA_CACHE_DIR", self.path("cache"));
         Window { child: command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap() }
     }
 
-    /// Plays a recording of these events, one a line.
+    /// Plays a recording of these events, one a line; without a model if that has no name.
     pub(super) fn play(&self, model: &str, options: &[&str], events: &[String]) -> Window {
         let lines: Vec<String> =
             events.iter().zip(0..).map(|(event, i)| format!(r#"{{"at_s":{i},"event":{event}}}"#)).collect();
         std::fs::write(self.path("events.jsonl"), lines.join("\n")).unwrap();
-        self.view(&[&[model, "--replay", "events.jsonl"], options].concat())
+        let model = Some(model).filter(|model| !model.is_empty());
+        self.view(&[model.as_slice(), &["--replay", "events.jsonl"], options].concat())
+    }
+
+    /// A model of one triangle: a file beside it is the image of all its textures.
+    pub(super) fn write_triangle(&self, name: &str, png: &[u8]) {
+        // Positions, coordinates, normals and tangents.
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let (normal, tangent) = ([0.0_f32, 0.0, 1.0], [1.0_f32, 0.0, 0.0, 1.0]);
+        let floats = positions.concat().into_iter().chain([0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+        let floats = floats.chain([normal; 3].concat()).chain([tangent; 3].concat());
+        let bytes: Vec<u8> = floats.flat_map(f32::to_le_bytes).collect();
+        std::fs::write(self.path("corners.bin"), &bytes).unwrap();
+        std::fs::write(self.path("image.png"), png).unwrap();
+        let views = [(0, 36), (36, 24), (60, 36), (96, 48)]
+            .map(|(offset, length)| json!({ "buffer": 0, "byteOffset": offset, "byteLength": length }));
+        let accessor =
+            |view: usize, kind: &str| json!({ "bufferView": view, "componentType": 5126, "count": 3, "type": kind });
+        let mut positions = accessor(0, "VEC3");
+        (positions["min"], positions["max"]) = (json!([0, 0, 0]), json!([1, 1, 0]));
+        let attributes = json!({ "POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2, "TANGENT": 3 });
+        let texture = json!({ "index": 0 });
+        let material = json!({
+            "pbrMetallicRoughness": { "baseColorTexture": texture, "metallicRoughnessTexture": texture },
+            "normalTexture": texture, "occlusionTexture": texture, "emissiveTexture": texture,
+        });
+        let model = json!({
+            "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+            "meshes": [{ "primitives": [{ "attributes": attributes, "material": 0 }] }], "materials": [material],
+            "textures": [{ "source": 0 }], "images": [{ "uri": "image.png" }],
+            "accessors": [positions, accessor(1, "VEC2"), accessor(2, "VEC3"), accessor(3, "VEC4")],
+            "bufferViews": views, "buffers": [{ "uri": "corners.bin", "byteLength": bytes.len() }],
+        });
+        std::fs::write(self.path(name), model.to_string()).unwrap();
     }
 
     /// Sends real input; the words are those of xdotool.
