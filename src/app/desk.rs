@@ -57,8 +57,6 @@ pub(super) struct Desk {
     pub(super) viewer: Viewer,
     pub(super) about: About,
     pub(super) texts: Texts,
-    /// The material that the panel shows.
-    pub(super) material: usize,
     /// What was open.
     pub(super) recent: Recent,
     pub(super) inspected: Inspected,
@@ -94,7 +92,6 @@ impl Desk {
             viewer,
             about: About::default(),
             texts: Texts::default(),
-            material: 0,
             recent,
             inspected: Inspected::default(),
             loading: None,
@@ -242,7 +239,7 @@ impl Desk {
     /// Puts shaders to use that are others than before, if a picture can be made with them.
     fn try_shaders(&mut self, stage: &mut Stage) {
         let view = self.view();
-        let (Some(shaders), Some(view)) = (&mut self.shaders, view) else { return };
+        let (Some(shaders), Some(view), Some(_)) = (&mut self.shaders, view, &stage.uploaded) else { return };
         let Some(sources) = shaders.changed() else { return };
         let tried = stage.try_shaders(sources.clone(), &view);
         shaders.tried(sources, &tried);

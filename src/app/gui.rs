@@ -153,6 +153,11 @@ impl Gui {
         }
     }
 
+    /// Pixels that so many points are, rounded.
+    pub(super) fn pixels(&self, points: f32) -> u32 {
+        (points * self.scale).round() as u32
+    }
+
     /// Uploads what a frame needs.
     pub(super) fn prepare(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, frame: &GuiFrame) {
         // There are no callbacks, and so no commands of theirs.

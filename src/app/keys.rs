@@ -109,6 +109,7 @@ pub(super) const MOUSE: &[(&str, &str)] = &[
     ("right drag, wheel, pinch", "nearer and farther, toward the cursor"),
     ("Shift wheel, two fingers", "move"),
     ("double click, middle click", "look at this point"),
+    ("Ctrl click", "the material of this point, in the panel"),
     ("Shift right drag", "turn the environment"),
     ("drop", "open a model, or light it with a panorama"),
 ];

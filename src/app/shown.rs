@@ -5,8 +5,9 @@ use super::state::{BackgroundState, ViewerState};
 use crate::bake::studio;
 use crate::import::{ImportError, environment_from_path};
 use crate::reference::geometry::{Geometry, Ray};
+use crate::reference::inspect::Inspector;
 use crate::scene::{Background, Channel, Environment, EnvironmentImage, Light, Material, Scene, View};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, UVec2, Vec3};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -87,6 +88,14 @@ impl Shown {
             Some(nearest)
         });
         nearest.is_finite().then(|| origin + nearest * direction)
+    }
+
+    /// Index of the material of the nearest surface that is seen in the middle of a pixel.
+    pub fn material_at(&self, state: &ViewerState, pixel: UVec2) -> Option<usize> {
+        let view = view_of(state, &self.around);
+        let inspector = Inspector::new(&self.scene, &view);
+        let (_, layers) = inspector.layers(pixel);
+        layers.first().map(|layer| inspector.material(&layer.hit))
     }
 
     /// Puts a panorama around the scene; `None` is black.

@@ -82,6 +82,11 @@ impl Stage {
         }
     }
 
+    /// Whether the device is the processors.
+    pub(super) fn is_software(&self) -> bool {
+        self.gpu.info.device_type == wgpu::DeviceType::Cpu
+    }
+
     /// Puts a scene on the device, as `state` shows it. `levels` are of its textures, and made where there are none.
     pub(super) fn open(
         &mut self,

@@ -49,6 +49,8 @@ pub(super) struct Interface {
     pub help: bool,
     pub statistics: bool,
     pub axes: bool,
+    /// The material that the panel shows.
+    pub material: usize,
     pub inspector: bool,
     pub truth: bool,
     /// Where the truth begins, as a share of the width.
@@ -69,6 +71,7 @@ impl Default for Interface {
             help: false,
             statistics: false,
             axes: false,
+            material: 0,
             inspector: false,
             truth: false,
             split: 0.5,
@@ -165,6 +168,9 @@ impl Viewer {
         let Some(at_px) = self.held.pointer_px else { return };
         let split_px = self.interface.split * f64::from(self.state.size_px[0]);
         let on_split = self.interface.truth && button == Button::Left && (at_px.x - split_px).abs() <= SPLIT_GRIP_PX;
+        if button == Button::Left && self.held.modifiers.ctrl {
+            return self.choose_material();
+        }
         self.held.buttons.push(button);
         self.press = Some(Press { at_px, moved: false, on_split });
         if button == Button::Left && !on_split {
@@ -175,6 +181,14 @@ impl Viewer {
             if is_second {
                 self.look_at(at_px, 2.0);
             }
+        }
+    }
+
+    /// Shows the material under the cursor in the panel.
+    fn choose_material(&mut self) {
+        let (Some(pixel), Some(shown)) = (self.pixel(), &self.shown) else { return };
+        if let Some(material) = shown.material_at(&self.state, pixel) {
+            (self.interface.panel, self.interface.material) = (true, material);
         }
     }
 

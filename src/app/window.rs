@@ -1,5 +1,7 @@
 //! The window: events in, pictures out. It draws when something has changed, and sleeps otherwise.
 
+mod replay;
+
 use super::desk::{Desk, DeskOptions};
 use super::gui::{Gui, GuiFrame};
 use super::input::{InputEvent, Recorded};
@@ -28,8 +30,6 @@ use winit::window::{Fullscreen, Window, WindowId};
 const BEHIND: [f32; 3] = [0.16; 3];
 /// Repaints that the panel asks for later than this do not matter.
 const NEVER: Duration = Duration::from_secs(3600);
-/// Between two looks at what a replay waits for.
-const LOOK_AGAIN: Duration = Duration::from_millis(10);
 /// Between two steps of a flight.
 const FLIGHT_STEP: Duration = Duration::from_millis(16);
 
@@ -93,6 +93,7 @@ pub fn run(options: ViewOptions) -> Result<(), ViewError> {
         began: Instant::now(),
         open: None,
         fingers: Fingers::default(),
+        panel_px: 0,
         titled: None,
         stale: true,
         due: None,
@@ -123,6 +124,8 @@ struct App {
     began: Instant,
     open: Option<Open>,
     fingers: Fingers,
+    /// How wide the panel is.
+    panel_px: u32,
     /// The model that the title of the window names.
     titled: Option<PathBuf>,
     /// Something may look different than it is on the screen.
@@ -150,12 +153,12 @@ impl Open {
         Ok(Self { window, screen, stage: Stage::new(gpu, shaders), gui, present, blank })
     }
 
-    /// Shows the picture with the panel over it, and beyond a share of its width another picture.
+    /// Shows the picture with the panel beside it, and from a place on, pixels from the left, another picture.
     fn show(
         &mut self,
         size_px: [u32; 2],
         frame: &GuiFrame,
-        other: Option<&(wgpu::TextureView, f64)>,
+        other: Option<&(wgpu::TextureView, f32)>,
     ) -> Result<(), GpuError> {
         let gpu = &self.stage.gpu;
         let Some(texture) = self.screen.next(gpu, size_px)? else {
@@ -165,7 +168,7 @@ impl Open {
         let target = texture.texture.create_view(&Default::default());
         let left = self.stage.shown().unwrap_or(&self.blank);
         let (right, split_px) = match other {
-            Some((right, share)) => (right, (share * f64::from(size_px[0])) as f32),
+            Some((right, split_px)) => (right, *split_px),
             None => (left, f32::MAX),
         };
         let presented = Presented { left, right, split_px, behind: BEHIND };
@@ -253,13 +256,17 @@ impl App {
         if size_px.contains(&0) {
             return;
         }
-        self.desk.viewer.state.size_px = size_px;
+        self.desk.viewer.state.size_px = beside(size_px, self.panel_px);
         self.desk.turn(&mut open.stage);
-        let (desk, stage, mut effects) = (&mut self.desk, &open.stage, Vec::new());
+        let (desk, stage, mut effects, mut panel) = (&mut self.desk, &open.stage, Vec::new(), 0.0);
         let frame = open.gui.run(&open.stage.gpu, &open.window, (size_px, at_s), |ui| {
-            effects.extend(panel::show(ui, desk, stage));
+            let (asked, width) = panel::show(ui, desk, stage);
+            effects.extend(asked);
+            panel = width;
         });
-        // What the panel has changed is seen at once.
+        // What the panel has changed is seen at once, and the picture has the room that it leaves.
+        self.panel_px = open.gui.pixels(panel);
+        self.desk.viewer.state.size_px = beside(size_px, self.panel_px);
         self.desk.turn(&mut open.stage);
         if self.titled != self.desk.viewer.state.model {
             self.titled.clone_from(&self.desk.viewer.state.model);
@@ -307,65 +314,6 @@ impl App {
         }
     }
 
-    /// Feeds the next event of a recording, once all that came before has been drawn.
-    fn play(&mut self, event_loop: &ActiveEventLoop) {
-        let is_busy = self.stale || self.desk.loading.is_some() || self.due.is_some_and(|due| due <= Instant::now());
-        let (Some(open), Some(player), false) = (&mut self.open, &mut self.player, is_busy) else { return };
-        if let Some(until) = player.held_until() {
-            self.due = Some(self.due.map_or(until, |due| due.min(until)));
-            return;
-        }
-        let size = open.window.inner_size();
-        if !player.has_size([size.width, size.height]) {
-            self.due = Some(Instant::now() + LOOK_AGAIN);
-            return;
-        }
-        let Some(Recorded { at_s, event }) = player.next() else {
-            return self.end(event_loop);
-        };
-        match event {
-            InputEvent::Resize { width, height } => {
-                player.wait_for([width, height]);
-                let _ = open.window.request_inner_size(PhysicalSize::new(width, height));
-                self.refresh();
-            }
-            InputEvent::Hold { seconds } => {
-                player.hold(seconds);
-                self.due = Some(Instant::now());
-            }
-            InputEvent::LoseDevice => {
-                open.stage.gpu.device.destroy();
-                self.refresh();
-            }
-            InputEvent::PointAt { widget, x, y } => match open.gui.place(&widget, (x, y)) {
-                Some((x, y)) => {
-                    player.found();
-                    self.input(event_loop, &InputEvent::Pointer { x, y }, at_s);
-                }
-                None if player
-                    .may_come(Recorded { at_s, event: InputEvent::PointAt { widget: widget.clone(), x, y } }) =>
-                {
-                    self.due = Some(Instant::now() + LOOK_AGAIN);
-                }
-                None => {
-                    let problem = format!("the recording points at `{widget}`, which the panel does not show");
-                    self.fail(event_loop, ViewError::Replay(problem));
-                }
-            },
-            event => self.input(event_loop, &event, at_s),
-        }
-    }
-
-    /// Ends; a replay with its last picture.
-    fn end(&mut self, event_loop: &ActiveEventLoop) {
-        if let (Some(path), Some(open)) = (self.screenshot_at_end.take(), &self.open)
-            && let Err(problem) = self.desk.screenshot(&open.stage, &path)
-        {
-            return self.fail(event_loop, ViewError::Replay(problem));
-        }
-        event_loop.exit();
-    }
-
     /// Moves a flight on.
     fn fly(&mut self, event_loop: &ActiveEventLoop) {
         if !self.desk.viewer.is_flying() {
@@ -402,14 +350,20 @@ fn title(model: Option<&Path>) -> String {
     name.map_or("Specula".into(), |name| format!("{name} - Specula"))
 }
 
-/// Draws what the state asks for. What is shown beyond a share of the width, and that share, where there is something.
-fn draw_picture(desk: &mut Desk, stage: &mut Stage) -> (Result<(), CaptureError>, Option<(wgpu::TextureView, f64)>) {
+/// The size of a picture beside a panel of a window.
+fn beside([width, height]: [u32; 2], panel_px: u32) -> [u32; 2] {
+    [width.saturating_sub(panel_px).max(1), height]
+}
+
+/// Draws what the state asks for. What is shown beyond a place, and that place, where there is something.
+fn draw_picture(desk: &mut Desk, stage: &mut Stage) -> (Result<(), CaptureError>, Option<(wgpu::TextureView, f32)>) {
     let Some(view) = desk.view() else { return (Ok(()), None) };
     desk.turn_truth(stage, &view);
     let interface = &desk.viewer.interface;
     let drawn = stage.draw(&view, interface.statistics);
     let truth = desk.truth.as_mut().and_then(|truth| truth.texture(stage, &view, interface.errors));
-    (drawn, truth.map(|truth| (truth, interface.split)))
+    let split_px = (interface.split * f64::from(view.size_px.x)) as f32;
+    (drawn, truth.map(|truth| (truth, split_px)))
 }
 
 /// Asks the shaders about the pixel that is looked into. Whether there is something new to show.

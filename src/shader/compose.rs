@@ -141,7 +141,12 @@ impl Composed {
             let reasons =
                 std::iter::successors(Some(error.as_inner() as &dyn std::error::Error), |error| error.source());
             let message = reasons.map(ToString::to_string).collect::<Vec<_>>().join(": ");
-            self.error_at(error.location(&self.text), message)
+            // Around the fault there may be the function, and what that is in.
+            let span = error
+                .spans()
+                .map(|(span, _)| span)
+                .min_by_key(|span| span.to_range().map_or(usize::MAX, |at| at.len()));
+            self.error_at(span.map(|span| span.location(&self.text)), message)
         })
     }
 
@@ -195,6 +200,17 @@ mod tests {
         assert!(composed.text.contains("return linear;") && !composed.text.contains("1.055"));
         assert_eq!(composed.files(), BTreeSet::from(["color/encode_srgb.wgsl", "color/srgb.wgsl"]));
         assert_eq!(composed.origin(1), Some(("color/srgb.wgsl", 1)));
+    }
+
+    #[test]
+    fn what_is_not_valid_in_a_replaced_file_has_its_line_too() {
+        let mut sources = ShaderSources::default();
+        let text = "fn srgb_from_linear(linear: vec3f) -> vec3f {\n    let x = linear.x;\n    return x;\n}";
+        sources.insert("color/srgb.wgsl", text.into());
+        let composed = compose(&sources, "color/encode_srgb.wgsl", &Slots::new()).unwrap();
+        let error = composed.parse().unwrap_err().to_string();
+        assert!(error.starts_with("color/srgb.wgsl:3: ") || error.starts_with("color/srgb.wgsl:2: "), "{error}");
+        assert!(error.contains("srgb_from_linear") && !error.contains('\n'), "{error}");
     }
 
     #[test]

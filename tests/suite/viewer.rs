@@ -147,6 +147,36 @@ fn times_and_notes_are_shown_beside_the_picture() {
     screen.play(&asset("spheres.glb"), &options, &events.concat()).end();
     assert_eq!(screen.state("chart.json")["look"]["debug_view"], "uv-checker");
     screen.assert_renders_again("chart");
+    // What the reference renderer knows of a pixel, and at last what the shaders say.
+    let events = [vec![pointer(150, 100)], key("I").into(), vec![point_at("inspector/by-shaders", 0.5)]].concat();
+    screen.play(&asset("spheres.glb"), &["--size", "300x200"], &events).end();
+}
+
+#[test]
+fn light_is_edited() {
+    let Some(screen) = Screen::open() else { return };
+    image::RgbaImage::from_pixel(2, 2, image::Rgba([200, 200, 255, 255])).save(screen.path("flat.png")).unwrap();
+    screen.write_triangle("lamp.gltf", &std::fs::read(screen.path("flat.png")).unwrap());
+    let events = [
+        key("P").to_vec(),
+        click("environment/white", 0.5).into(),
+        click("environment/intensity", 0.15).into(),
+        click("look/exposure", 0.2).into(),
+        click("part/File", 0.1).into(),
+        click("part/Materials", 0.1).into(),
+        vec![hold(1)],
+        click("part/Lights", 0.1).into(),
+        vec![hold(1)],
+        click("lights/0", 0.2).into(),
+    ];
+    let options = ["--size", "640x600", "--screenshot-at-end", "lit.png"];
+    screen.play("lamp.gltf", &options, &events.concat()).end();
+    screen.assert_renders_again("lit");
+    let state = screen.state("lit.json");
+    assert_eq!(state["environment"]["source"], "white");
+    assert_ne!(state["environment"]["intensity"], 1.0, "{state}");
+    assert_ne!(state["look"]["exposure_ev"], 0.0, "{state}");
+    assert!(state["light_factors"]["0"].as_f64().is_some_and(|factor| factor != 1.0), "{state}");
 }
 
 #[test]

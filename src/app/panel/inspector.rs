@@ -2,6 +2,7 @@
 
 use super::overlay::float;
 use crate::app::desk::Desk;
+use crate::app::gui::name_place;
 use crate::app::stage::Stage;
 use crate::capture::CaptureError;
 use crate::reference::inspect::Inspector;
@@ -61,7 +62,7 @@ pub(super) fn show(ui: &egui::Ui, desk: &mut Desk, stage: &Stage) {
                 ui.end_row();
             }
             if let Some(radiance) = inspected.by_shaders.filter(|radiance| radiance.w > 0.0) {
-                ui.weak("by the shaders");
+                name_place(&ui.weak("by the shaders"), "inspector/by-shaders");
                 ui.monospace(vector((radiance.truncate() / radiance.w).as_dvec3()));
                 ui.end_row();
             }

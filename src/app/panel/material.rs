@@ -17,8 +17,8 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk) {
         let name = shown.original(index).and_then(|material| material.name.clone());
         name.unwrap_or_else(|| format!("material {index}"))
     };
-    desk.material = desk.material.min(count.saturating_sub(1));
-    let chosen = &mut desk.material;
+    let chosen = &mut desk.viewer.interface.material;
+    *chosen = (*chosen).min(count.saturating_sub(1));
     let combo = ComboBox::from_id_salt("material").width(240.0).selected_text(name(*chosen)).show_ui(ui, |ui| {
         for index in 0..count {
             let row = ui.selectable_value(chosen, index, name(index));

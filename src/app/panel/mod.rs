@@ -1,4 +1,4 @@
-//! What lies over the picture.
+//! What lies over the picture and beside it.
 
 mod browser;
 mod file;
@@ -19,13 +19,14 @@ use super::stage::Stage;
 use super::viewer::Effect;
 use egui::{Panel, ScrollArea};
 
-/// Draws all of it, and returns what was asked for by it.
-pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> Vec<Effect> {
-    let mut effects = Vec::new();
+/// Draws all of it. What was asked for by it, and how wide the panel beside the picture is, in points.
+pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> (Vec<Effect>, f32) {
+    let (mut effects, mut width) = (Vec::new(), 0.0);
     if desk.viewer.interface.panel {
-        Panel::right("panel").default_size(320.0).show(ui, |ui| {
+        let panel = Panel::right("panel").default_size(320.0).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| side(ui, desk, stage, &mut effects));
         });
+        width = panel.response.rect.width();
     }
     recent::welcome(ui, desk, &mut effects);
     overlay::progress(ui, desk);
@@ -36,7 +37,7 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> Vec<Eff
     statistics::show(ui, desk, stage);
     overlay::help(ui, desk);
     browser::show(ui, desk, &mut effects);
-    effects
+    (effects, width)
 }
 
 /// The parts of the panel, each foldable.

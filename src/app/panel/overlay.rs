@@ -7,10 +7,16 @@ use crate::app::truth::{Figures, Truth};
 use egui::{Align2, Area, Color32, FontId, Frame, Grid, Id, ProgressBar, RichText, ScrollArea, Stroke, vec2};
 use glam::DVec3;
 
-/// Something small that floats at a side of the window.
+/// What needs less floats beside the panel, points.
+const ROOM: f32 = 360.0;
+
+/// Something small that floats at a side of the picture.
 pub(super) fn float<R>(ui: &egui::Ui, name: &str, at: Align2, content: impl FnOnce(&mut egui::Ui) -> R) -> R {
     let inward = vec2(-12.0 * at.x().to_sign(), -12.0 * at.y().to_sign());
+    // Where the panel leaves no room, it is covered: what does not fit would be cut off.
+    let beside_panel = Some(ui.available_rect_before_wrap()).filter(|room| room.width() >= ROOM);
     let area = Area::new(Id::unique(name)).anchor(at, inward).order(egui::Order::Foreground);
+    let area = area.constrain_to(beside_panel.unwrap_or_else(|| ui.ctx().content_rect()));
     area.show(ui.ctx(), |ui| Frame::popup(ui.style()).show(ui, content).inner).inner
 }
 

@@ -22,7 +22,7 @@ pub(super) fn show(ui: &egui::Ui, desk: &Desk, stage: &Stage) {
         ui.label(stage.gpu.description());
         ui.label(format!("{width} x {height}, {} path, frame {}", stats.path.name(), stage.frames));
         ui.label(format!("{} draws, {} triangles, {} pipelines", stats.draws, stats.triangles, stats.pipelines.len()));
-        stage.timing.iter().for_each(|timing| times(ui, timing));
+        stage.timing.iter().for_each(|timing| times(ui, timing, stage.is_software()));
     });
 }
 
@@ -32,7 +32,7 @@ pub(super) fn part(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) {
     if rows::switch(ui, ("time frames, and wait for each", "statistics/time"), &mut timed) {
         desk.viewer.act(Action::Statistics);
     }
-    stage.timing.iter().for_each(|timing| times(ui, timing));
+    stage.timing.iter().for_each(|timing| times(ui, timing, stage.is_software()));
     let (Some(shown), Some(uploaded)) = (&desk.viewer.shown, &stage.uploaded) else { return };
     ui.label(stage.gpu.description());
     scene(ui, &shown.scene, uploaded);
@@ -46,7 +46,7 @@ pub(super) fn part(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) {
 }
 
 /// A table of times. They are of the last frame that was drawn: nothing is drawn to measure it, but once.
-fn times(ui: &mut egui::Ui, timing: &FrameTiming) {
+fn times(ui: &mut egui::Ui, timing: &FrameTiming, is_software: bool) {
     let FrameTiming { recording_ms, device_ms, processor_ms, passes } = timing;
     let table = Grid::new("times").num_columns(2).show(ui, |ui| {
         let mut row = |name: &str, ms: f64| {
@@ -54,8 +54,8 @@ fn times(ui: &mut egui::Ui, timing: &FrameTiming) {
             ui.monospace(format!("{ms:8.2} ms"));
             ui.end_row();
         };
-        row("commands recorded in", *recording_ms);
-        row("done after another", *device_ms);
+        row("recording commands", *recording_ms);
+        row("until the device is done", *device_ms);
         processor_ms.iter().for_each(|ms| row("processor time, all threads", *ms));
         for pass in passes.iter().flatten() {
             row(&format!("pass {}", pass.name), pass.ms);
@@ -63,6 +63,7 @@ fn times(ui: &mut egui::Ui, timing: &FrameTiming) {
     });
     name_place(&table.response, "statistics/times");
     ui.weak(match passes {
+        Some(_) if is_software => "passes by the driver's clock, the one on the wall",
         Some(_) => "passes by the device's own clock",
         None => "this device has no clock that passes could be timed by",
     });

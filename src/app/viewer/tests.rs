@@ -125,6 +125,24 @@ fn keys_change_the_look_once_a_press() {
 }
 
 #[test]
+fn materials_are_chosen_by_their_surfaces() {
+    let mut viewer = viewer();
+    let mut scene = viewer.shown.take().unwrap().scene;
+    scene.materials.push(Material::default());
+    scene.meshes[0].primitives[0].material = 1;
+    viewer.shown = Some(Shown::new(scene, &viewer.state));
+    let ctrl = InputEvent::Modifiers(Modifiers { ctrl: true, ..Modifiers::default() });
+    let click = [button(Button::Left, true), button(Button::Left, false)];
+    // Beside the ball there is none.
+    feed(&mut viewer, &[&[ctrl, pointer(2.0, 2.0)], &click[..]].concat());
+    assert_eq!((viewer.interface.panel, viewer.interface.material), (false, 0));
+    let before = viewer.state.clone();
+    feed(&mut viewer, &[&[pointer(200.0, 150.0)], &click[..], &[pointer(300.0, 99.0)]].concat());
+    assert_eq!((viewer.interface.panel, viewer.interface.material), (true, 1));
+    assert_eq!(viewer.state, before, "the camera has moved");
+}
+
+#[test]
 fn flying_takes_keys_and_time() {
     let mut viewer = viewer();
     feed(&mut viewer, &[press("V"), press("W")]);
@@ -160,4 +178,17 @@ fn bookmarks_and_dropped_files() {
     assert_eq!(viewer.state.environment.source, "sky.HDR");
     let open = feed(&mut viewer, &[InputEvent::Drop { path: "notes.txt".into() }]);
     assert_eq!(open, [Effect::Open("notes.txt".into())]);
+}
+
+#[test]
+fn the_environment_turns_and_light_and_exposure_step() {
+    let mut viewer = viewer();
+    let shift = |shift| InputEvent::Modifiers(Modifiers { shift, ..Modifiers::default() });
+    let right = |pressed| button(Button::Right, pressed);
+    feed(&mut viewer, &[pointer(100.0, 100.0), shift(true), right(true), pointer(200.0, 100.0), right(false)]);
+    assert!((viewer.state.environment.rotation_deg - 90.0).abs() < 1e-9, "a quarter of the width is a quarter turn");
+    feed(&mut viewer, &[press("L"), release("L"), shift(false), press("="), release("="), press("="), press("T")]);
+    assert!((viewer.state.environment.intensity - 0.8).abs() < 1e-12);
+    assert!((viewer.state.look.exposure_ev - 2.0 / 3.0).abs() < 1e-6);
+    assert_ne!(viewer.state.look.tone_map, crate::scene::ToneMap::default());
 }

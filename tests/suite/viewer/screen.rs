@@ -89,7 +89,7 @@ impl Screen {
         self.view(&[model.as_slice(), &["--replay", "events.jsonl"], options].concat())
     }
 
-    /// A model of one triangle: a file beside it is the image of all its textures.
+    /// A model of one triangle and a light: a file beside it is the image of all its textures.
     pub(super) fn write_triangle(&self, name: &str, png: &[u8]) {
         // Positions, coordinates, normals and tangents.
         let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -112,7 +112,10 @@ impl Screen {
             "normalTexture": texture, "occlusionTexture": texture, "emissiveTexture": texture,
         });
         let model = json!({
-            "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+            "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0, 1] }],
+            "nodes": [{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }],
+            "extensionsUsed": ["KHR_lights_punctual"],
+            "extensions": { "KHR_lights_punctual": { "lights": [{ "type": "directional", "intensity": 2.0 }] } },
             "meshes": [{ "primitives": [{ "attributes": attributes, "material": 0 }] }], "materials": [material],
             "textures": [{ "source": 0 }], "images": [{ "uri": "image.png" }],
             "accessors": [positions, accessor(1, "VEC2"), accessor(2, "VEC3"), accessor(3, "VEC4")],
