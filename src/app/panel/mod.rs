@@ -21,10 +21,11 @@ use egui::{Panel, ScrollArea};
 
 /// Draws all of it. What was asked for by it, and how wide the panel beside the picture is, in points.
 pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> (Vec<Effect>, f32) {
-    let (mut effects, mut width) = (Vec::new(), 0.0);
+    let (mut effects, mut width, mut has_statistics) = (Vec::new(), 0.0, false);
     if desk.viewer.interface.panel {
         let panel = Panel::right("panel").default_size(320.0).show(ui, |ui| {
-            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| side(ui, desk, stage, &mut effects));
+            let all = ScrollArea::vertical().auto_shrink(false);
+            has_statistics = all.show(ui, |ui| side(ui, desk, stage, &mut effects)).inner;
         });
         width = panel.response.rect.width();
     }
@@ -34,14 +35,16 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage) -> (Vec<Ef
     overlay::truth(ui, desk);
     overlay::axes(ui, desk);
     inspector::show(ui, desk, stage);
-    statistics::show(ui, desk, stage);
+    if !has_statistics {
+        statistics::show(ui, desk, stage);
+    }
     overlay::help(ui, desk);
     browser::show(ui, desk, &mut effects);
     (effects, width)
 }
 
-/// The parts of the panel, each foldable.
-fn side(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage, effects: &mut Vec<Effect>) {
+/// The parts of the panel, each foldable. Whether the statistics, which come last, are open.
+fn side(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage, effects: &mut Vec<Effect>) -> bool {
     rows::part(ui, "File", true, |ui| file::show(ui, desk, effects));
     rows::part(ui, "Picture", true, |ui| look::picture(ui, desk));
     rows::part(ui, "Camera", false, |ui| look::camera(ui, desk));
@@ -49,5 +52,5 @@ fn side(ui: &mut egui::Ui, desk: &mut Desk, stage: &Stage, effects: &mut Vec<Eff
     rows::part(ui, "Lights", false, |ui| light::lights(ui, desk));
     rows::part(ui, "Scene", false, |ui| tree::show(ui, desk));
     rows::part(ui, "Materials", true, |ui| material::show(ui, desk));
-    rows::part(ui, "Statistics", false, |ui| statistics::part(ui, desk, stage));
+    rows::part(ui, "Statistics", false, |ui| statistics::part(ui, desk, stage))
 }

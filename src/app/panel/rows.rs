@@ -5,10 +5,11 @@ use crate::app::named::Named;
 use egui::{CollapsingHeader, ComboBox, Slider, SliderClamping};
 use std::ops::RangeInclusive;
 
-/// A foldable part.
-pub(super) fn part(ui: &mut egui::Ui, title: &str, open: bool, content: impl FnOnce(&mut egui::Ui)) {
+/// A foldable part. Whether it is open.
+pub(super) fn part(ui: &mut egui::Ui, title: &str, open: bool, content: impl FnOnce(&mut egui::Ui)) -> bool {
     let header = CollapsingHeader::new(title).default_open(open).show(ui, content);
     name_place(&header.header_response, format!("part/{title}"));
+    header.body_returned.is_some()
 }
 
 /// A number. `name` is shown, and `place` finds it.
