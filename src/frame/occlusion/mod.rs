@@ -1,7 +1,8 @@
 //! What is hidden behind other things: a coarse picture of how far away the nearest of them are, made for every view.
 //!
 //! On the CPU, and from this frame's view alone: it works in the first frame and in a host's pass, needs no readback, and
-//! what it says is proven, so that the picture has the same bits.
+//! what it says is proven, so that the picture has the same bits. Taken for granted is only that no fragment is nearer than
+//! the nearest corner of its triangle.
 
 mod cells;
 mod occluders;
