@@ -209,9 +209,9 @@ impl Planner {
         // Channels draw what is hidden too, and wider than it is.
         let hides = options.culling == Culling::On && view.channel.is_none() && !drawables.occluders.is_empty();
         if hides {
-            self.occlusion.look(drawables, &frustum)
+            self.occlusion.look(drawables, &frustum);
         } else {
-            self.occlusion.clear()
+            self.occlusion.clear();
         }
         let frustum = (options.culling != Culling::Off).then_some(&frustum);
         let forward = view.camera.forward_in_world().as_vec3();

@@ -149,7 +149,7 @@ mod tests {
         // Corners of a cube, three vertices at each; zeros of either sign.
         let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
         let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let sign = |face: usize| if face % 2 == 0 { Vec3::splat(-0.0) } else { Vec3::ZERO };
+        let sign = |face: usize| if face.is_multiple_of(2) { Vec3::splat(-0.0) } else { Vec3::ZERO };
         let positions = faces.iter().enumerate().flat_map(|(f, face)| face.map(|i| corner(i) + sign(f))).collect();
         let indices = (0..6).flat_map(|f| [0, 1, 2, 0, 2, 3].map(|i| 4 * f + i)).collect();
         let cube = Primitive { positions, indices, ..shapes::sphere(1.0, 2, 0) };
