@@ -46,6 +46,7 @@ pub struct CaptureTarget {
     /// Of the deferred path.
     visibility: OnceLock<wgpu::TextureView>,
     covered: OnceLock<wgpu::TextureView>,
+    over: OnceLock<wgpu::TextureView>,
     depth: wgpu::TextureView,
     radiance: wgpu::Texture,
     radiance_view: wgpu::TextureView,
@@ -72,6 +73,7 @@ impl CaptureTarget {
             multisampled: OnceLock::new(),
             visibility: OnceLock::new(),
             covered: OnceLock::new(),
+            over: OnceLock::new(),
             depth: view(&texture(gpu, size, ("depth", formats::DEPTH, samples), attachment)),
             radiance_view: view(&radiance),
             radiance,
@@ -126,12 +128,14 @@ impl CaptureTarget {
                 let color = self.multisampled.get_or_init(|| view(what, attachment));
                 SurfaceTarget::Forward { color, resolve: Some(&self.radiance_view) }
             }
-            RenderPath::Deferred => {
+            RenderPath::Deferred | RenderPath::Mixed => {
                 let read = attachment | wgpu::TextureUsages::TEXTURE_BINDING;
                 let visibility = || view(("visibility", formats::VISIBILITY, samples), read);
+                let over = || view(("over", precision.hdr_format(), samples), read);
                 SurfaceTarget::Deferred {
                     visibility: self.visibility.get_or_init(visibility),
                     covered: self.covered.get_or_init(|| view(("covered", formats::DEPTH, 1), attachment)),
+                    over: (path == RenderPath::Mixed).then(|| self.over.get_or_init(over)),
                     color: &self.radiance_view,
                 }
             }

@@ -12,22 +12,23 @@ mod lifetime;
 mod paint;
 mod pass_format;
 mod pick;
+mod radiance;
 mod target;
 mod uniforms;
 
 use crate::bake::{EmbeddedTable, dfg, disney, fresnel_tail, taps};
 use crate::frame::{Culled, Culling, Draw, FramePlan, PlanOptions, RenderPath, are_small, plan};
 use crate::gpu::formats::{self, Precision};
-use crate::gpu::{Identity, LostFlag, PassClock, Staging, Uploads, timed};
+use crate::gpu::{Identity, LostFlag, Staging, Uploads};
 use crate::gpu_scene::{GpuScene, SharedTextures, Table, TextureLevels, WhiteFurnace};
 use crate::passes::{
-    BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget, DeferredPipelines, DeferredTarget,
-    DisplayPipelines, ForwardPipelines, ForwardTarget,
+    BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget, DeferredPipelines, DisplayPipelines,
+    ForwardPipelines, ForwardTarget,
 };
 use crate::scene::{Background, Channel, EnvironmentMaps, Scene, Topology, View};
 use crate::shader::types::FrameUniform;
 use crate::shader::{Backdrop, DisplayFeatures, ShaderSources};
-use draws::{PlanPipelines, draw_plan};
+use radiance::Frame;
 use std::sync::Arc;
 use uniforms::{background_uniform, display_uniform, frame_uniform};
 
@@ -60,9 +61,9 @@ pub enum PathChoice {
     /// Always forward: what an engine expects of a pass of its own.
     #[default]
     Forward,
-    /// Deferred where a scene is a few draws of small triangles; measured to be faster on software drivers.
+    /// Deferred where a scene has a few draws of small triangles; measured to be faster on software drivers.
     Faster,
-    /// Deferred wherever it can be.
+    /// Deferred wherever something can be.
     Deferred,
 }
 
@@ -144,14 +145,21 @@ impl Renderer {
     pub fn path(&self, scene: &GpuScene, view: &View, target: ForwardTarget) -> RenderPath {
         let blends = target.format != Precision::Float.hdr_format() || self.blends_float;
         // A channel asks for neighbours in the picture.
-        let can = scene.pulled.is_some() && view.channel.is_none() && blends;
-        let triangles = |drawable: usize| scene.draws[drawable].primitive.indices.len() as u64 / 3;
+        let Some(geometry) = scene.pulled.as_ref().filter(|_| view.channel.is_none() && blends) else {
+            return RenderPath::Forward;
+        };
+        let triangles =
+            |index: usize| geometry.holds(index).then(|| scene.draws[index].primitive.indices.len() as u64 / 3);
         let is_deferred = match self.path {
             PathChoice::Forward => false,
-            PathChoice::Faster => can && are_small(&scene.drawables, view, target.samples, triangles),
-            PathChoice::Deferred => can,
+            PathChoice::Faster => are_small(&scene.drawables, view, target.samples, triangles),
+            PathChoice::Deferred => true,
         };
-        if is_deferred { RenderPath::Deferred } else { RenderPath::Forward }
+        match is_deferred {
+            false => RenderPath::Forward,
+            true if geometry.left_over(&scene.drawables, view).next().is_some() => RenderPath::Mixed,
+            true => RenderPath::Deferred,
+        }
     }
 
     /// Uploads a scene. `maps` are baked from its environment (`bake::environment`) and needed when it has one.
@@ -208,7 +216,7 @@ impl Renderer {
         uploaded
     }
 
-    /// Makes the pipelines that this view needs on the forward path, so that [`Self::encode_radiance`] compiles nothing.
+    /// Makes the forward pipelines that this view needs, so that [`Self::encode_radiance`] compiles nothing.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -218,8 +226,10 @@ impl Renderer {
     ) -> Result<FramePlan, RenderError> {
         let options = PlanOptions { samples: target.samples, culling: self.culling };
         let plan = plan(&scene.drawables, scene.features, view, options);
-        if self.path(scene, view, target) == RenderPath::Forward {
-            self.forward.prepare(device, &self.sources, scene, &plan, target)?;
+        match self.path(scene, view, target) {
+            RenderPath::Forward => self.prepare_forward(device, scene, (&plan, None), target)?,
+            RenderPath::Deferred => {}
+            RenderPath::Mixed => self.prepare_forward(device, scene, (&plan, scene.pulled.as_ref()), target)?,
         }
         Ok(plan)
     }
@@ -239,7 +249,7 @@ impl Renderer {
             && display.is_none_or(|display| state.displays(view, radiance, display))
     }
 
-    /// Records the forward pass: linear radiance, multiplied with coverage.
+    /// Records linear radiance, multiplied with coverage.
     pub fn encode_radiance(
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
@@ -258,39 +268,18 @@ impl Renderer {
         self.check_channel(device, scene, view, target.format)?;
         let options = PlanOptions { samples: target.samples, culling: self.culling };
         let visible = state.plan_frame((device, queue), scene, view, options)?;
-        let under = matches!(target.surfaces, SurfaceTarget::Deferred { .. });
-        let panorama = self.panorama((device, queue), scene, view, (forward_target, under), state)?;
+        let mut panorama = |under| self.panorama((device, queue), scene, view, (forward_target, under), state);
+        let (panorama, behind) = match target.surfaces {
+            SurfaceTarget::Forward { .. } => (panorama(false)?, None),
+            SurfaceTarget::Deferred { over: None, .. } => (None, panorama(true)?),
+            SurfaceTarget::Deferred { over: Some(_), .. } => (panorama(false)?, panorama(true)?),
+        };
         let uniform = frame_uniform(scene, view);
-        let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
+        let group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
         // Without a panorama, an environment background is the black of a scene without light.
-        let coverage = if view.background == Background::Environment && panorama.is_none() && view.channel.is_none() {
-            1.0
-        } else {
-            0.0
-        };
-        let path = if let SurfaceTarget::Deferred { visibility, covered, color: radiance } = target.surfaces {
-            let (ForwardTarget { format, samples, .. }, depth, size_px) = (forward_target, target.depth, view.size_px);
-            let into = DeferredTarget { format, samples, visibility, depth, covered, radiance, size_px, coverage };
-            let (Some(geometry), None) = (&scene.pulled, target.pixel) else { return Err(RenderError::NotDeferrable) };
-            let (plan, kept) = ((&state.plan, view), &mut state.deferred);
-            let pass = self.deferred.prepare(device, &self.sources, (scene, geometry), plan, &into, kept)?;
-            pass.encode(encoder, scene, &frame_group, &into, &mut state.clock, |pass| {
-                if let Some(panorama) = &panorama {
-                    panorama.draw(pass);
-                }
-            });
-            RenderPath::Deferred
-        } else {
-            self.forward.prepare(device, &self.sources, scene, &state.plan, forward_target)?;
-            let mut pass = begin_forward((encoder, &mut state.clock), target, f64::from(coverage));
-            if let Some(pixel) = target.pixel {
-                pass.set_scissor_rect(pixel.x, pixel.y, 1, 1);
-            }
-            let mut pipelines = PlanPipelines::default();
-            pipelines.replace(self, view, &state.plan, forward_target);
-            draw_plan(&mut pass, &pipelines, scene, &frame_group, (&state.plan, panorama.as_ref()));
-            RenderPath::Forward
-        };
+        let is_black = view.background == Background::Environment && !state.plan.panorama && view.channel.is_none();
+        let frame = Frame { view, target, group, panorama, behind, coverage: f32::from(is_black) };
+        let path = self.encode_path(device, encoder, scene, &frame, state)?;
         state.was_drawn(scene, view, self.culling, target);
         Ok(FrameStats { path, ..frame_stats(scene, state) })
     }
@@ -410,37 +399,6 @@ pub(crate) fn shared_textures(device: &wgpu::Device, queue: &wgpu::Queue) -> Sha
         taps: table(&taps::TABLE).upload(device, queue),
         clamp_sampler,
     }
-}
-
-fn begin_forward<'encoder>(
-    (encoder, clock): (&'encoder mut wgpu::CommandEncoder, &mut Option<PassClock>),
-    target: &RadianceTarget<'_>,
-    coverage: f64,
-) -> wgpu::RenderPass<'encoder> {
-    let (color, resolve) = match target.surfaces {
-        SurfaceTarget::Forward { color, resolve } => (color, resolve),
-        SurfaceTarget::Deferred { color, .. } => (color, None),
-    };
-    // The multisampled colour is not needed once it is resolved; depth is read by nobody yet.
-    let store = if resolve.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-    let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: coverage };
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("forward"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: color,
-            depth_slice: None,
-            resolve_target: resolve,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: target.depth,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
-            stencil_ops: None,
-        }),
-        timestamp_writes: timed(clock, "forward"),
-        occlusion_query_set: None,
-        multiview_mask: None,
-    })
 }
 
 fn frame_stats(scene: &GpuScene, state: &FrameState) -> FrameStats {

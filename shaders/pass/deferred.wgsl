@@ -4,6 +4,7 @@
 #import <interface>
 #import <output>
 #import <seen>
+#import <share>
 #import "pass/fullscreen.wgsl"
 #import "pass/draw_depth.wgsl"
 
@@ -102,9 +103,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
         left &= ~group;
         // A shared pixel may have none of this draw: what was shaded is nothing then, and may be NaN.
-        let count = f32(countOneBits(group));
-        let middle = floor(position.xy) + places / max(count, 1.0);
-        sum += select(vec4f(0.0), shaded(chosen, middle) * (count / f32(SAMPLES)), group != 0u);
+        let middle = floor(position.xy) + places / max(f32(countOneBits(group)), 1.0);
+        sum += select(vec4f(0.0), shaded(chosen, middle) * share(vec2i(position.xy), group), group != 0u);
         if left == 0u {
             break;
         }

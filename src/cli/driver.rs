@@ -30,7 +30,7 @@ pub(super) struct FrameArgs {
     #[arg(long, value_name = "1|4", default_value_t = 4)]
     msaa: u32,
     /// forward shades triangle by triangle. deferred finds out first what is seen and shades that, where it can (opaque
-    /// triangles); it differs at edges alone. auto takes deferred on software drivers where triangles are small, which is
+    /// triangles), and draws the rest (blended and masked ones, lines, points) over it; it differs at edges alone. auto takes deferred on software drivers where triangles are small, which is
     /// faster there, and else forward.
     #[arg(long, value_enum, default_value = "auto")]
     path: PathArg,

@@ -54,7 +54,7 @@ impl AdapterStats {
 
 #[derive(Debug, Serialize)]
 pub(super) struct GpuStats {
-    /// `forward` or `deferred`.
+    /// `forward`, `deferred`, or `mixed`: forward over deferred.
     pub(super) path: &'static str,
     pub(super) draws: u32,
     pub(super) triangles: u64,

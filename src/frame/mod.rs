@@ -9,6 +9,7 @@ mod identity;
 mod occlusion;
 mod path;
 mod plan;
+mod rectangle;
 #[cfg(test)]
 mod tests;
 
@@ -18,5 +19,6 @@ pub use cull::{Culling, clip_from_origin};
 pub use drawables::{Drawable, Drawables, PlacedInstance, Placements};
 pub use identity::PrimitivePlace;
 pub use occlusion::Occluders;
-pub use path::{RenderPath, are_small, is_deferrable, rectangle_around};
+pub use path::{RenderPath, are_small, deferred, left_over};
 pub use plan::{Culled, Draw, FramePlan, PipelineKey, PlanOptions, Planner, Raster, forward_features, plan};
+pub use rectangle::Rectangle;

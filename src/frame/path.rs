@@ -2,9 +2,9 @@
 
 use super::cull::clip_from_origin;
 use super::drawables::{Drawable, Drawables};
+use super::rectangle::Rectangle;
 use crate::scene::{Topology, View};
 use crate::shader::Alpha;
-use glam::{Mat4, UVec2, Vec2, Vec3};
 
 /// The way from triangles to radiance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -14,6 +14,8 @@ pub enum RenderPath {
     Forward,
     /// Triangles leave their numbers, then each pixel is shaded once for all that belong together.
     Deferred,
+    /// Deferred where that is possible; over it, forward, what is left.
+    Mixed,
 }
 
 impl RenderPath {
@@ -22,106 +24,136 @@ impl RenderPath {
         match self {
             Self::Forward => "forward",
             Self::Deferred => "deferred",
+            Self::Mixed => "mixed",
         }
     }
 }
 
-/// Each draw goes once more over the part of the picture that it can be in, to find its pixels.
-const MAX_DRAWS: usize = 64;
+/// Each place of a draw is a draw of its own, which goes once more over the part of the picture that it can be in, to find
+/// its pixels.
+const MAX_PLACES: usize = 64;
+
+/// The most vertices that draws may have together at places but their first: they are kept where they are placed.
+const MAX_COPIED_VERTICES: usize = 1 << 20;
 
 /// Pixels of the picture a triangle, below which the deferred path is the faster one on a software driver, for shaders
 /// with and without textures (docs/performance.md). With several samples blocks beside edges cost more.
 const SMALL_TRIANGLE_PX: f64 = 75.0;
 const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 250.0;
 
-/// Whether the deferred path can draw these: a few opaque draws of triangles, each at one place.
-pub fn is_deferrable(drawables: &Drawables) -> bool {
-    let fits = |drawable: &Drawable| {
+/// What a pixel costs that may be drawn over, of what it costs to be gone over by a deferred draw.
+const OVER: f64 = 0.4;
+
+/// Which drawables are deferred: those of opaque triangles, if they have few places together, else those of them at one
+/// place. `vertices` says how many one has.
+pub fn deferred(drawables: &Drawables, vertices: impl Fn(&Drawable) -> usize) -> Vec<bool> {
+    let copies = |drawable: &Drawable| (drawable.placements.len() - 1) * vertices(drawable);
+    let fits = |drawable: &Drawable, most: usize| {
+        let places = &drawables.placements.instances[drawable.placements.clone()];
         drawable.material_features.alpha == Alpha::Opaque
             && drawable.topology == Topology::Triangles
-            && drawable.placements.len() == 1
+            && (1..=most).contains(&places.len())
+            // A mesh may hold a primitive twice.
+            && places.windows(2).all(|two| two[0] != two[1])
     };
-    (1..=MAX_DRAWS).contains(&drawables.draws.len()) && drawables.draws.iter().all(fits)
+    for most in [MAX_PLACES, 1] {
+        let chosen: Vec<bool> = drawables.draws.iter().map(|drawable| fits(drawable, most)).collect();
+        let sum = |of: &dyn Fn(&Drawable) -> usize| -> usize {
+            let draws = drawables.draws.iter().zip(&chosen).filter(|(_, chosen)| **chosen);
+            draws.map(|(drawable, _)| of(drawable)).sum()
+        };
+        if sum(&|drawable| drawable.placements.len()) <= MAX_PLACES && sum(&copies) <= MAX_COPIED_VERTICES {
+            return chosen;
+        }
+    }
+    vec![false; drawables.draws.len()]
 }
 
-/// Whether triangles are small enough for the deferred path to pay, over all drawables; `triangles` says how many one has.
-pub fn are_small(drawables: &Drawables, view: &View, samples: u32, triangles: impl Fn(usize) -> u64) -> bool {
+/// Where a view may show something that is not deferred, draw by draw.
+pub fn left_over(
+    drawables: &Drawables,
+    view: &View,
+    is_deferred: impl Fn(usize) -> bool,
+) -> impl Iterator<Item = Rectangle> {
+    let (clip, size_px) = (clip_from_origin(view, drawables.origin_in_world), view.size_px);
+    let left = drawables.draws.iter().enumerate().filter(move |(index, _)| !is_deferred(*index));
+    left.filter_map(move |(_, drawable)| Rectangle::around(drawable.bounds, &clip, size_px))
+}
+
+/// Whether triangles are small enough for the deferred path to pay, over all that can take it. `triangles` says how many a
+/// drawable has, if it is deferred.
+pub fn are_small(drawables: &Drawables, view: &View, samples: u32, triangles: impl Fn(usize) -> Option<u64>) -> bool {
     let clip = clip_from_origin(view, drawables.origin_in_world);
     let (mut pixels, mut count) = (0.0, 0);
     for (index, drawable) in drawables.draws.iter().enumerate() {
-        if let Some([_, size]) = rectangle_around(drawable.bounds, &clip, view.size_px) {
-            pixels += f64::from(size.x) * f64::from(size.y);
-            count += triangles(index);
+        let Some(triangles) = triangles(index) else { continue };
+        for placement in drawable.placements.clone() {
+            let bounds = drawables.placements.boxes.get(placement);
+            if let Some(rectangle) = Rectangle::around(bounds, &clip, view.size_px) {
+                pixels += rectangle.area();
+                count += triangles;
+            }
         }
     }
+    let over = left_over(drawables, view, |index| triangles(index).is_some()).reduce(Rectangle::with);
     let limit = if samples > 1 { SMALL_TRIANGLE_MULTISAMPLED_PX } else { SMALL_TRIANGLE_PX };
-    pixels < limit * count as f64
-}
-
-/// Corner and size, in pixels, of the part of the picture that a box can cover, given by its centre and half extent: the
-/// rectangle around its corners, or all of the picture where one is beside or behind the eye. None where it is out of
-/// sight.
-pub fn rectangle_around((center, half): (Vec3, Vec3), clip_from_origin: &Mat4, size_px: UVec2) -> Option<[UVec2; 2]> {
-    let (mut least, mut largest) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    for corner in 0..8 {
-        let sign = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
-        let clip = *clip_from_origin * (center + half * Vec3::new(sign(0), sign(1), sign(2))).extend(1.0);
-        if !clip.is_finite() || clip.w <= 0.0 {
-            return Some([UVec2::ZERO, size_px]);
-        }
-        let pixel = (Vec2::new(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * size_px.as_vec2();
-        (least, largest) = (least.min(pixel), largest.max(pixel));
-    }
-    // A pixel of room for rounding, here and in the rasteriser.
-    let first = (least - 1.0).floor().max(Vec2::ZERO).min(size_px.as_vec2());
-    let last = (largest + 1.0).ceil().max(Vec2::ZERO).min(size_px.as_vec2());
-    first.cmplt(last).all().then(|| [first.as_uvec2(), (last - first).as_uvec2()])
+    pixels + OVER * over.map_or(0.0, Rectangle::area) < limit * count as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::framing::default_view;
-    use crate::scene::{Mesh, Node, Scene, shapes};
+    use crate::scene::{AlphaMode, Material, Mesh, Node, Scene, shapes};
     use crate::shader::SceneFeatures;
+    use glam::UVec2;
 
-    fn sphere() -> Scene {
+    /// So many spheres of some 8000 triangles at the same place, which are one draw, and one of another material.
+    fn spheres(count: usize, alpha_mode: AlphaMode) -> Scene {
+        let node = |mesh| Node { mesh: Some(mesh), ..Default::default() };
         Scene {
-            nodes: vec![Node { mesh: Some(0), ..Default::default() }],
-            roots: vec![0],
-            meshes: vec![Mesh { name: None, primitives: vec![shapes::sphere(1.0, 64, 0)] }],
-            materials: vec![Default::default()],
+            nodes: (0..count).map(|_| node(0)).chain([node(1)]).collect(),
+            roots: (0..=count).collect(),
+            meshes: [0, 1].map(|i| Mesh { name: None, primitives: vec![shapes::sphere(1.0, 64, i)] }).into(),
+            materials: vec![Material::default(), Material { alpha_mode, ..Default::default() }],
             ..Default::default()
         }
     }
 
-    #[test]
-    fn triangles_are_small_or_large_by_the_picture() {
-        let scene = sphere();
-        let drawables = Drawables::new(&scene, SceneFeatures::of(&scene));
-        assert!(is_deferrable(&drawables));
-        // Some 8000 triangles.
-        let small = |side, samples| {
-            let view = default_view(&scene, UVec2::splat(side));
-            are_small(&drawables, &view, samples, |_| scene.meshes[0].primitives[0].indices.len() as u64 / 3)
-        };
-        assert!(small(512, 1) && small(512, 4) && !small(4096, 1) && !small(4096, 4));
-        assert!(!small(1300, 1) && small(1300, 4));
+    fn deferred_of(scene: &Scene, vertices: usize) -> Vec<bool> {
+        deferred(&Drawables::new(scene, SceneFeatures::of(scene)), |_| vertices)
     }
 
     #[test]
-    fn rectangles_hold_what_is_seen_of_a_box() {
-        let size = UVec2::new(300, 200);
-        let view = default_view(&sphere(), size);
-        let clip = clip_from_origin(&view, glam::DVec3::ZERO);
-        let all = Some([UVec2::ZERO, size]);
-        assert_eq!(rectangle_around((Vec3::ZERO, Vec3::splat(100.0)), &clip, size), all);
-        assert_eq!(rectangle_around((Vec3::ZERO, Vec3::INFINITY), &clip, size), all);
-        let Some([corner, side]) = rectangle_around((Vec3::ZERO, Vec3::splat(0.1)), &clip, size) else {
-            panic!("out of sight")
+    fn few_places_are_deferred() {
+        assert_eq!(deferred_of(&spheres(1, AlphaMode::Opaque), 8000), [true, true]);
+        assert_eq!(deferred_of(&spheres(63, AlphaMode::Opaque), 8000), [true, true]);
+        assert_eq!(deferred_of(&spheres(64, AlphaMode::Opaque), 8000), [false, true]);
+        assert_eq!(deferred_of(&spheres(64, AlphaMode::Blend), 8000), [true, false]);
+        assert_eq!(deferred_of(&spheres(63, AlphaMode::Opaque), 80_000), [false, true]);
+        let mut twice = spheres(1, AlphaMode::Blend);
+        let again = twice.meshes[0].primitives[0].clone();
+        twice.meshes[0].primitives.push(again);
+        assert_eq!(deferred_of(&twice, 8000), [false, false]);
+    }
+
+    #[test]
+    fn triangles_are_small_or_large_by_the_picture() {
+        let largest = |scene: &Scene, samples| {
+            let drawables = Drawables::new(scene, SceneFeatures::of(scene));
+            let is_deferred = deferred(&drawables, |_| 8000);
+            let triangles = |index: usize| is_deferred[index].then_some(8000);
+            let small =
+                |side: &u32| are_small(&drawables, &default_view(scene, UVec2::splat(*side)), samples, triangles);
+            let sides: Vec<u32> = (1..=64).map(|i| 64 * i).filter(small).collect();
+            // What is small in a picture is small in a smaller one.
+            assert_eq!(sides, (1..=sides.len() as u32).map(|i| 64 * i).collect::<Vec<_>>());
+            sides.last().copied()
         };
-        assert!(corner.cmpgt(UVec2::new(100, 60)).all() && (corner + side).cmplt(UVec2::new(200, 140)).all());
-        let beside = view.camera.world_from_view.transform_point3(glam::DVec3::new(1e3, 0.0, -10.0)).as_vec3();
-        assert_eq!(rectangle_around((beside, Vec3::ONE), &clip, size), None);
+        let (opaque, glazed) = (spheres(1, AlphaMode::Opaque), spheres(1, AlphaMode::Blend));
+        let limits = [1, 4].map(|samples| [&opaque, &glazed].map(|scene| largest(scene, samples)));
+        let [[one, one_glazed], [four, four_glazed]] = limits;
+        assert!(one > Some(512) && one < Some(1300) && four > one && four < Some(4096), "{limits:?}");
+        assert!(one_glazed < one && one_glazed > Some(512) && four_glazed < four, "{limits:?}");
     }
 }

@@ -1,8 +1,8 @@
 //! Every bind-group layout. Group 0 belongs to the frame and its light, group 1 to the material.
 
 use crate::shader::{
-    Backdrop, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, SEEN_SAMPLES_BINDING,
-    SceneFeatures, Shading, disney_binding, material_texture_binding,
+    Backdrop, MATERIAL_SAMPLER_BINDING, MATERIAL_UNIFORM_BINDING, MaterialFeatures, OVER_SAMPLES_BINDING,
+    SEEN_SAMPLES_BINDING, SceneFeatures, Seen, Shading, disney_binding, material_texture_binding,
 };
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, Device, ShaderStages};
 
@@ -92,19 +92,24 @@ pub fn visibility_entries() -> Vec<BindGroupLayoutEntry> {
     vec![buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform)]
 }
 
-/// What the visibility pass has left, alone.
-pub fn covered_entries(multisampled: bool) -> Vec<BindGroupLayoutEntry> {
-    vec![whole_numbers(SEEN_SAMPLES_BINDING, multisampled)]
+/// What the visibility pass has left, and what was drawn over it.
+pub fn covered_entries(seen: Seen) -> Vec<BindGroupLayoutEntry> {
+    let mut entries = vec![whole_numbers(SEEN_SAMPLES_BINDING, seen.samples > 1)];
+    if seen.under {
+        entries.extend(over_entries(seen.samples));
+    }
+    entries
 }
 
-/// Group 2 of the deferred pass: the draw, vertices, triangles, and what the visibility pass has left.
-pub fn pulled_entries(multisampled: bool) -> Vec<BindGroupLayoutEntry> {
-    vec![
-        buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform),
-        texture(1, false),
-        whole_numbers(2, false),
-        whole_numbers(SEEN_SAMPLES_BINDING, multisampled),
-    ]
+/// What was drawn over it, alone.
+pub fn over_entries(samples: u32) -> Vec<BindGroupLayoutEntry> {
+    vec![texture_of(OVER_SAMPLES_BINDING, wgpu::TextureSampleType::Float { filterable: false }, samples > 1)]
+}
+
+/// Group 2 of the deferred pass: the draw, vertices, triangles, and [`covered_entries`].
+pub fn pulled_entries(seen: Seen) -> Vec<BindGroupLayoutEntry> {
+    let uniform = buffer(0, ShaderStages::VERTEX_FRAGMENT, BufferBindingType::Uniform);
+    [vec![uniform, texture(1, false), whole_numbers(2, false)], covered_entries(seen)].concat()
 }
 
 /// Scene radiance to display: uniform, texture.
@@ -148,13 +153,18 @@ pub fn visibility_layout(device: &Device) -> BindGroupLayout {
 }
 
 /// The layout of [`covered_entries`].
-pub fn covered_layout(device: &Device, multisampled: bool) -> BindGroupLayout {
-    layout(device, "covered", &covered_entries(multisampled))
+pub fn covered_layout(device: &Device, seen: Seen) -> BindGroupLayout {
+    layout(device, "covered", &covered_entries(seen))
+}
+
+/// The layout of [`over_entries`].
+pub fn over_layout(device: &Device, samples: u32) -> BindGroupLayout {
+    layout(device, "over", &over_entries(samples))
 }
 
 /// The layout of [`pulled_entries`].
-pub fn pulled_layout(device: &Device, multisampled: bool) -> BindGroupLayout {
-    layout(device, "pulled", &pulled_entries(multisampled))
+pub fn pulled_layout(device: &Device, seen: Seen) -> BindGroupLayout {
+    layout(device, "pulled", &pulled_entries(seen))
 }
 
 fn layout(device: &Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
@@ -167,20 +177,15 @@ fn buffer(binding: u32, visibility: ShaderStages, ty: BufferBindingType) -> Bind
 }
 
 fn texture(binding: u32, filterable: bool) -> BindGroupLayoutEntry {
-    let ty = BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    BindGroupLayoutEntry { binding, visibility: ShaderStages::FRAGMENT, ty, count: None }
+    texture_of(binding, wgpu::TextureSampleType::Float { filterable }, false)
 }
 
 fn whole_numbers(binding: u32, multisampled: bool) -> BindGroupLayoutEntry {
-    let ty = BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Uint,
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled,
-    };
+    texture_of(binding, wgpu::TextureSampleType::Uint, multisampled)
+}
+
+fn texture_of(binding: u32, sample_type: wgpu::TextureSampleType, multisampled: bool) -> BindGroupLayoutEntry {
+    let ty = BindingType::Texture { sample_type, view_dimension: wgpu::TextureViewDimension::D2, multisampled };
     BindGroupLayoutEntry { binding, visibility: ShaderStages::FRAGMENT, ty, count: None }
 }
 

@@ -11,7 +11,7 @@ mod pulled;
 mod tables;
 mod textures;
 
-use crate::frame::{Drawables, PlacedInstance, is_deferrable};
+use crate::frame::{Drawables, PlacedInstance};
 use crate::gpu::bindings::{self, frame_layout};
 use crate::gpu::{DeviceLost, Identity, Staging, filled_buffer};
 use crate::scene::{EnvironmentMaps, MAX_SUNS, Scene};
@@ -26,6 +26,7 @@ pub(crate) use lights::GpuClusters;
 use lights::GpuLights;
 use materials::GpuMaterial;
 pub use pulled::PulledGeometry;
+pub(crate) use pulled::PulledPlace;
 pub use tables::Table;
 use textures::TextureCache;
 pub use textures::{HostTextures, TextureLevels};
@@ -200,10 +201,8 @@ impl GpuScene {
     /// Uploads the geometry of `scene`, of which this was made, once more, so that surfaces can be shaded in a pass of
     /// their own. Does nothing where they cannot.
     pub(crate) fn pull(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) {
-        if is_deferrable(&self.drawables) {
-            self.pulled = PulledGeometry::new(device, queue, scene, &self.drawables);
-            self.bytes.geometry += self.pulled.as_ref().map_or(0, PulledGeometry::bytes);
-        }
+        self.pulled = PulledGeometry::new(device, queue, scene, &self.drawables);
+        self.bytes.geometry += self.pulled.as_ref().map_or(0, PulledGeometry::bytes);
     }
 
     /// Group 0 of the forward pass, with the uniform of one view, its list of visible instances and its clusters; and with

@@ -1,15 +1,16 @@
 //! Geometry as textures, for a fragment shader that fetches the corners of its triangle by itself: a texel is four
-//! numbers in one fetch, where a buffer takes one for each. Every draw has one place, so vertices are brought there once
-//! and not at every corner of every pixel.
+//! numbers in one fetch, where a buffer takes one for each. Vertices are brought to each of their places once and not at
+//! every corner of every pixel.
 
 use super::geometry::attribute_data;
 use super::gpu_instance;
-use crate::frame::{Drawable, Drawables};
+use crate::frame::{Drawable, Drawables, Rectangle, deferred, left_over};
 use crate::gpu::formats;
-use crate::scene::{Primitive, Scene};
+use crate::scene::{Primitive, Scene, View};
 use crate::shader::types::Instance;
 use crate::shader::{PULLED_ROW_TEXELS, VertexFeatures, texels_per_vertex};
 use glam::{Mat3, Vec3, Vec4};
+use std::ops::Range;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 /// Vertices, attributes side by side, and triangles.
@@ -17,40 +18,75 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 pub struct PulledGeometry {
     pub(crate) vertices: wgpu::Texture,
     pub(crate) triangles: wgpu::Texture,
-    /// By drawable.
+    /// Drawable by drawable.
     pub(crate) places: Vec<PulledPlace>,
+    /// By drawable, its range in `places`; empty for those that are not deferred.
+    of_drawables: Vec<Range<usize>>,
 }
 
-/// Where a drawable begins, in texels, and what has placed it.
+/// A drawable at one place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PulledPlace {
+    pub(crate) drawable: usize,
+    /// Index into [`Placements::instances`](crate::frame::Placements::instances).
+    pub(crate) placement: usize,
+    /// Where vertices and triangles begin, in texels.
     pub(crate) vertices: u32,
     pub(crate) triangles: u32,
     pub(crate) instance: Instance,
 }
 
 impl PulledGeometry {
-    /// None where the device has no textures of this size.
+    /// None where nothing can be deferred, or the device has no textures of this size.
     pub(crate) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &Scene,
         drawables: &Drawables,
     ) -> Option<Self> {
+        let primitive = |drawable: &Drawable| &scene.meshes[drawable.mesh].primitives[drawable.primitive];
+        let is_deferred = deferred(drawables, |drawable| primitive(drawable).positions.len());
+        if !is_deferred.contains(&true) {
+            return None;
+        }
         let (mut vertices, mut triangles) = (Vec::<[f32; 4]>::new(), Vec::<[u32; 4]>::new());
-        let mut places = Vec::new();
-        for drawable in &drawables.draws {
-            let instance = instance(drawables, drawable);
-            places.push(PulledPlace { vertices: vertices.len() as u32, triangles: triangles.len() as u32, instance });
-            let primitive = &scene.meshes[drawable.mesh].primitives[drawable.primitive];
-            triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
-            append_vertices(&mut vertices, primitive, &drawable.vertex_features, &instance);
+        let (mut places, mut of_drawables) = (Vec::new(), Vec::new());
+        for (drawable, found) in drawables.draws.iter().enumerate() {
+            let first = places.len();
+            if is_deferred[drawable] {
+                let primitive = primitive(found);
+                for placement in found.placements.clone() {
+                    let instance = instance(drawables, placement);
+                    let [vertex, triangle] = [vertices.len(), triangles.len()].map(|texels| texels as u32);
+                    places.push(PulledPlace { drawable, placement, vertices: vertex, triangles: triangle, instance });
+                    append_vertices(&mut vertices, primitive, &found.vertex_features, &instance);
+                }
+                triangles.extend(primitive.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2], 0]));
+            }
+            of_drawables.push(first..places.len());
         }
         Some(Self {
             vertices: texture(device, queue, formats::PULLED_VERTICES, vertices)?,
             triangles: texture(device, queue, formats::PULLED_TRIANGLES, triangles)?,
             places,
+            of_drawables,
         })
+    }
+
+    /// Whether a drawable is here.
+    pub(crate) fn holds(&self, drawable: usize) -> bool {
+        !self.of_drawables[drawable].is_empty()
+    }
+
+    /// Where a view may show something that is not here, draw by draw.
+    pub(crate) fn left_over(&self, drawables: &Drawables, view: &View) -> impl Iterator<Item = Rectangle> {
+        left_over(drawables, view, |drawable| self.holds(drawable))
+    }
+
+    /// Where in `places` a drawable is at an instance.
+    pub(crate) fn find(&self, drawables: &Drawables, drawable: usize, instance: u32) -> Option<usize> {
+        let placed = |place: &usize| drawables.placements.instances[self.places[*place].placement];
+        self.of_drawables[drawable].clone().find(|place| placed(place) == instance)
     }
 
     pub(crate) fn bytes(&self) -> u64 {
@@ -58,10 +94,10 @@ impl PulledGeometry {
     }
 }
 
-/// As it places the only instance.
-fn instance(drawables: &Drawables, drawable: &Drawable) -> Instance {
-    let placement = drawables.placements.instances[drawable.placements.start];
-    gpu_instance(&drawables.instances[placement as usize], drawables.origin_in_world)
+/// As it is placed.
+fn instance(drawables: &Drawables, placement: usize) -> Instance {
+    let instance = drawables.placements.instances[placement];
+    gpu_instance(&drawables.instances[instance as usize], drawables.origin_in_world)
 }
 
 /// The attributes of each vertex side by side, in whole texels, as the vertex shader of the forward pass hands them on.

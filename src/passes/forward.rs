@@ -41,16 +41,16 @@ impl ForwardPipelines {
         Self { cache, ..Default::default() }
     }
 
-    /// Makes the pipelines of `plan` that do not exist yet.
+    /// Makes the pipelines that do not exist yet, of those that `keys` names.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
         sources: &ShaderSources,
         scene: &GpuScene,
-        plan: &FramePlan,
+        keys: impl IntoIterator<Item = PipelineKey>,
         target: ForwardTarget,
     ) -> Result<(), ShaderError> {
-        for key in plan.pipelines.iter().flat_map(|key| [Some(*key), key.edges()]).flatten() {
+        for key in keys.into_iter().flat_map(|key| [Some(key), key.edges()]).flatten() {
             if self.pipelines.contains_key(&(key, target)) {
                 continue;
             }
@@ -112,12 +112,12 @@ impl ForwardPipelines {
 }
 
 /// Records `draws` of a plan with its pipelines. State that two draws in a row share is set once.
-pub fn draw(
+pub fn draw<'a>(
     pass: &mut wgpu::RenderPass<'_>,
     pipelines: &[Option<wgpu::RenderPipeline>],
-    scene: &GpuScene,
+    scene: &'a GpuScene,
     frame_group: &wgpu::BindGroup,
-    draws: &[Draw],
+    draws: impl IntoIterator<Item = &'a Draw>,
 ) {
     pass.set_bind_group(0, frame_group, &[]);
     if scene.indices.size() > 0 {

@@ -7,7 +7,7 @@ mod forward;
 mod present;
 
 pub use background::{BackgroundPass, BackgroundPipeline, BackgroundSource, BackgroundTarget};
-pub use deferred::{DeferredGroups, DeferredPass, DeferredPipelines, DeferredTarget};
+pub use deferred::{DeferredGroups, DeferredPass, DeferredPipelines, DeferredTarget, OverTarget};
 pub use display::{DisplayPass, DisplayPipelines};
 pub use forward::{ForwardPipelines, ForwardTarget, draw};
 pub use present::{PresentPass, Presented};

@@ -1,8 +1,8 @@
 //! The draws of a plan, in their order.
 
 use super::Renderer;
-use crate::frame::FramePlan;
-use crate::gpu_scene::GpuScene;
+use crate::frame::{Draw, FramePlan};
+use crate::gpu_scene::{GpuScene, PulledGeometry};
 use crate::passes::{BackgroundPass, ForwardTarget, draw};
 use crate::scene::{Channel, View};
 
@@ -26,16 +26,17 @@ impl PlanPipelines {
     }
 }
 
-/// Records all that a plan draws on the forward path.
+/// Records all that a plan draws on the forward path, but what is deferred.
 pub(super) fn draw_plan(
     pass: &mut wgpu::RenderPass<'_>,
     pipelines: &PlanPipelines,
     scene: &GpuScene,
     frame_group: &wgpu::BindGroup,
-    (plan, panorama): (&FramePlan, Option<&BackgroundPass>),
+    (plan, panorama, deferred): (&FramePlan, Option<&BackgroundPass>, Option<&PulledGeometry>),
 ) {
     let PlanPipelines { surfaces, edges } = pipelines;
-    draw(pass, surfaces, scene, frame_group, &plan.opaque);
+    let is_left = |draw: &&Draw| deferred.is_none_or(|geometry| !geometry.holds(draw.drawable));
+    draw(pass, surfaces, scene, frame_group, plan.opaque.iter().filter(is_left));
     if let Some(panorama) = panorama {
         panorama.draw(pass);
     }

@@ -53,7 +53,7 @@ struct Drawn {
     revision: u64,
     view: View,
     culling: Culling,
-    surfaces: [Option<wgpu::TextureView>; 3],
+    surfaces: [Option<wgpu::TextureView>; 4],
     depth: wgpu::TextureView,
     samples: u32,
     pixel: Option<UVec2>,

@@ -75,7 +75,7 @@ impl Renderer {
         let own = clip_from_origin(view, scene.drawables.origin_in_world);
         uniform.clip_from_world = pass.clip(&view.camera, own).to_cols_array_2d();
         let frame_group = self.frame_group((device, queue), scene, (view, visible), &uniform, state)?;
-        self.forward.prepare(device, &self.sources, scene, &state.plan, target)?;
+        self.prepare_forward(device, scene, (&state.plan, None), target)?;
         pipelines.replace(self, view, &state.plan, target);
         let identity = scene.identity.clone();
         let size_px = view.size_px;
@@ -100,7 +100,7 @@ impl Prepared<'_> {
         let Painting { frame_group, pipelines, panorama, at_px, size_px, .. } = self.painting;
         let (at, size) = (at_px, size_px.as_vec2());
         pass.set_viewport(at.x, at.y, size.x, size.y, 0.0, 1.0);
-        draw_plan(pass, pipelines, self.scene, frame_group, (&self.state.plan, panorama.as_ref()));
+        draw_plan(pass, pipelines, self.scene, frame_group, (&self.state.plan, panorama.as_ref(), None));
     }
 
     /// What the frame consists of.

@@ -28,6 +28,9 @@ pub enum SurfaceTarget<'a> {
         visibility: &'a wgpu::TextureView,
         /// In `formats::DEPTH`, one sample a pixel.
         covered: &'a wgpu::TextureView,
+        /// In the format of the radiance, with as many samples as the depth, to be read by shaders. Given exactly where the
+        /// path is [`RenderPath::Mixed`](crate::frame::RenderPath::Mixed).
+        over: Option<&'a wgpu::TextureView>,
         /// One sample a pixel.
         color: &'a wgpu::TextureView,
     },
@@ -43,10 +46,10 @@ impl<'a> SurfaceTarget<'a> {
     }
 
     /// All textures; the first tells the paths apart.
-    pub(super) fn views(&self) -> [Option<&'a wgpu::TextureView>; 3] {
+    pub(super) fn views(&self) -> [Option<&'a wgpu::TextureView>; 4] {
         match *self {
-            Self::Forward { color, resolve } => [None, Some(color), resolve],
-            Self::Deferred { visibility, covered, color } => [Some(visibility), Some(covered), Some(color)],
+            Self::Forward { color, resolve } => [None, Some(color), resolve, None],
+            Self::Deferred { visibility, covered, over, color } => [Some(visibility), Some(covered), Some(color), over],
         }
     }
 }

@@ -27,9 +27,9 @@ pub use interface::{
 };
 pub use modules::{
     Backdrop, DisplayFeatures, TargetLight, background_module, background_module_into, covered_module, deferred_module,
-    display_module, forward_module, forward_module_into, forward_slots, present_module, visibility_module,
+    display_module, forward_module, forward_module_into, forward_slots, over_module, present_module, visibility_module,
 };
-pub use pulled::{PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, texels_per_vertex};
+pub use pulled::{OVER_SAMPLES_BINDING, PULLED_ROW_TEXELS, SEEN_SAMPLES_BINDING, Seen, texels_per_vertex};
 #[cfg(feature = "cli")]
 pub(crate) use sources::embedded;
 pub use sources::{SOURCES, ShaderSources};

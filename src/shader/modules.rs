@@ -3,6 +3,7 @@
 use super::compose::{Composed, ShaderError, Slot, Slots, compose};
 use super::features::{Alpha, ForwardFeatures, FresnelFeature, LightList, Shading};
 use super::interface::Gradients;
+use super::pulled::Seen;
 use super::sources::ShaderSources;
 use super::{channels, interface, pulled, types};
 use crate::scene::{Components, Geometry, Quality, Term, TextureSlot, ToneMap};
@@ -51,12 +52,13 @@ fn target_slots(light: TargetLight, uniform: &str) -> Slots {
 pub fn deferred_module(
     sources: &ShaderSources,
     features: &ForwardFeatures,
-    samples: u32,
+    seen: Seen,
 ) -> Result<Composed, ShaderError> {
     let mut slots = forward_slots(features);
     slots.insert("interface", Slot::Text(pulled::vertex_interface(&features.vertex, features.channel)));
     slots.insert("material", Slot::Text(interface::material_interface(&features.material, Gradients::Explicit)));
-    slots.insert("seen", Slot::Text(pulled::seen(samples, 2)));
+    slots.insert("seen", Slot::Text(pulled::seen(seen, 2)));
+    slots.insert("share", Slot::File(if seen.under { "pass/share_under.wgsl" } else { "pass/share.wgsl" }));
     compose(sources, "pass/deferred.wgsl", &slots)
 }
 
@@ -68,9 +70,14 @@ pub fn visibility_module(sources: &ShaderSources) -> Result<Composed, ShaderErro
 }
 
 /// Which draw has a pixel, as depth.
-pub fn covered_module(sources: &ShaderSources, samples: u32) -> Result<Composed, ShaderError> {
-    let slots = Slots::from([("types", Slot::Text(types::wgsl())), ("seen", Slot::Text(pulled::seen(samples, 0)))]);
+pub fn covered_module(sources: &ShaderSources, seen: Seen) -> Result<Composed, ShaderError> {
+    let slots = Slots::from([("types", Slot::Text(types::wgsl())), ("seen", Slot::Text(pulled::seen(seen, 0)))]);
     compose(sources, "pass/covered.wgsl", &slots)
+}
+
+/// What was drawn over that, into radiance.
+pub fn over_module(sources: &ShaderSources, samples: u32) -> Result<Composed, ShaderError> {
+    compose(sources, "pass/over.wgsl", &Slots::from([("over", Slot::Text(pulled::over(samples, 0)))]))
 }
 
 /// What fills the slots of the forward pass.

@@ -3,10 +3,21 @@
 
 use super::features::VertexFeatures;
 use super::interface::{Attribute, attributes, vertex_color};
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// Binding of what the visibility pass has left, wherever it is read.
 pub const SEEN_SAMPLES_BINDING: u32 = 3;
+/// Binding of what was drawn over that.
+pub const OVER_SAMPLES_BINDING: u32 = 4;
+
+/// What shading in a pass of its own reads of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Seen {
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Whether anything was drawn over what is shaded.
+    pub under: bool,
+}
 
 /// Width of the textures that vertices and triangles are fetched from, texels.
 pub const PULLED_ROW_TEXELS: u32 = 4096;
@@ -103,18 +114,45 @@ fn sample_places(samples: u32) -> Vec<[f32; 2]> {
     }
 }
 
+impl fmt::Display for Seen {
+    /// For names of modules.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.samples, if self.under { ".under" } else { "" })
+    }
+}
+
 /// The `<seen>` slot: what the visibility pass has left, `SAMPLES` of it a pixel, and where those are. It is bound in
 /// `group`.
-pub(super) fn seen(samples: u32, group: u32) -> String {
-    let (texture, last) = if samples > 1 { ("texture_multisampled_2d", "sample") } else { ("texture_2d", "0") };
+pub(super) fn seen(seen: Seen, group: u32) -> String {
+    let Seen { samples, under } = seen;
+    let (texture, last) = fetched(samples);
     let places: Vec<String> = sample_places(samples).iter().map(|[x, y]| format!("vec2f({x:?}, {y:?})")).collect();
-    format!(
-        "const SAMPLES: u32 = {samples}u;\n\
-         const SAMPLE_PLACES = array<vec2f, SAMPLES>({});\n\n\
+    let mut text = if under { over(samples, group) } else { format!("const SAMPLES: u32 = {samples}u;\n\n") };
+    let number = if under { "select(0u, stored.x, transmitted(pixel, sample) > 0.0)" } else { "stored.x" };
+    let _ = write!(
+        text,
+        "const SAMPLE_PLACES = array<vec2f, SAMPLES>({});\n\n\
          @group({group}) @binding({SEEN_SAMPLES_BINDING}) var seen_samples: {texture}<u32>;\n\n\
          // Number of the draw, 0 where there is none, and of its triangle.\n\
          fn seen(pixel: vec2i, sample: u32) -> vec2u {{\n    let stored = textureLoad(seen_samples, pixel, {last});\n    \
-         return vec2u(stored.x, stored.z | stored.w << 16u);\n}}\n",
+         return vec2u({number}, stored.z | stored.w << 16u);\n}}\n",
         places.join(", ")
+    );
+    text
+}
+
+/// The `<over>` slot: what was drawn over, `SAMPLES` of it a pixel, and what passes through. It is bound in `group`.
+pub(super) fn over(samples: u32, group: u32) -> String {
+    let (texture, last) = fetched(samples);
+    format!(
+        "const SAMPLES: u32 = {samples}u;\n\n\
+         @group({group}) @binding({OVER_SAMPLES_BINDING}) var over_samples: {texture}<f32>;\n\n\
+         fn over(pixel: vec2i, sample: u32) -> vec4f {{\n    return textureLoad(over_samples, pixel, {last});\n}}\n\n\
+         fn transmitted(pixel: vec2i, sample: u32) -> f32 {{\n    return 1.0 - over(pixel, sample).w;\n}}\n\n"
     )
+}
+
+/// Type of a texture of so many samples, and what its texels are fetched by beside their place.
+fn fetched(samples: u32) -> (&'static str, &'static str) {
+    if samples > 1 { ("texture_multisampled_2d", "sample") } else { ("texture_2d", "0") }
 }

@@ -5,8 +5,8 @@ mod tree;
 use crate::shaders::{display_features, forward_features, term_features};
 use specula::proof;
 use specula::shader::{
-    Backdrop, SOURCES, ShaderSources, TargetLight, background_module_into, covered_module, deferred_module,
-    display_module, forward_module, present_module, visibility_module,
+    Backdrop, SOURCES, Seen, ShaderSources, TargetLight, background_module_into, covered_module, deferred_module,
+    display_module, forward_module, over_module, present_module, visibility_module,
 };
 use std::collections::BTreeSet;
 use tree::{File, exists, files, names_after, read, words};
@@ -212,8 +212,12 @@ fn every_shader_file_is_embedded_and_part_of_some_module() {
     let backdrops = [Backdrop::Sharp, Backdrop::Blurred];
     let backgrounds = lights.flat_map(|light| backdrops.map(|backdrop| (backdrop, light)));
     modules.extend(backgrounds.map(|(backdrop, light)| background_module_into(&sources, backdrop, light).unwrap()));
-    let deferred = forward.iter().step_by(50).map(|features| deferred_module(&sources, features, 4).unwrap());
-    modules.extend(deferred.chain([covered_module(&sources, 4).unwrap(), visibility_module(&sources).unwrap()]));
+    for under in [false, true] {
+        let seen = Seen { samples: 4, under };
+        modules.extend(forward.iter().step_by(50).map(|features| deferred_module(&sources, features, seen).unwrap()));
+        modules.push(covered_module(&sources, seen).unwrap());
+    }
+    modules.extend([over_module(&sources, 4).unwrap(), visibility_module(&sources).unwrap()]);
     let used: BTreeSet<&str> = modules.iter().flat_map(|module| module.files()).collect();
     let unused: Vec<&String> = embedded.iter().filter(|path| !used.contains(path.as_str())).collect();
     assert!(unused.is_empty(), "no module contains {unused:?}");

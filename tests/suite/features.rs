@@ -15,7 +15,7 @@ use specula::scene::{
     Texture, TextureRef, TextureSlot, Topology, UvTransform, shapes,
 };
 use specula::shader::{
-    Composed, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources, VertexFeatures,
+    Composed, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, Seen, ShaderSources, VertexFeatures,
     deferred_module, forward_module,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -76,8 +76,9 @@ impl Setup {
     }
 
     fn modules(&self) -> [Composed; 2] {
-        let sources = ShaderSources::default();
-        [forward_module(&sources, &self.features()), deferred_module(&sources, &self.features(), 4)].map(Result::unwrap)
+        let (sources, features) = (ShaderSources::default(), self.features());
+        let seen = Seen { samples: 4, under: false };
+        [forward_module(&sources, &features), deferred_module(&sources, &features, seen)].map(Result::unwrap)
     }
 }
 

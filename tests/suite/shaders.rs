@@ -4,16 +4,17 @@ use glam::{Vec2, Vec3, Vec4};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use specula::gpu::bindings::{
     FRAME_INSTANCES, FRAME_TAPS, FRAME_UNIFORM, background_entries, covered_entries, display_entries, frame_entries,
-    material_entries, present_entries, pulled_entries,
+    material_entries, over_entries, present_entries, pulled_entries,
 };
 use specula::scene::{
     AlphaMode, Disney, Geometry, Material, MetalFresnel, Primitive, Quality, Sampler, Scene, Term, Texture, TextureRef,
     TextureSlot, ToneMap, Topology, UvTransform,
 };
 use specula::shader::{
-    Backdrop, Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, ShaderSources,
-    Shading, TargetLight, VertexFeatures, background_module, background_module_into, covered_module, deferred_module,
-    display_module, forward_module, forward_module_into, present_module, visibility_module,
+    Backdrop, Composed, DisplayFeatures, ForwardFeatures, LightList, MaterialFeatures, SceneFeatures, Seen,
+    ShaderSources, Shading, TargetLight, VertexFeatures, background_module, background_module_into, covered_module,
+    deferred_module, display_module, forward_module, forward_module_into, over_module, present_module,
+    visibility_module,
 };
 use std::collections::BTreeMap;
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
@@ -229,17 +230,19 @@ fn forward_modules_into_display_light_bind_what_those_into_radiance_bind() {
 #[test]
 fn deferred_modules_use_all_that_is_bound_and_of_the_frame_what_forward_modules_use() {
     let sources = ShaderSources::default();
-    for samples in [1, 4] {
-        assert_eq!(used(&covered_module(&sources, samples).unwrap()), offered(&[covered_entries(samples > 1)]));
+    for (samples, under) in [(1, false), (4, false), (1, true), (4, true)] {
+        let seen = Seen { samples, under };
+        assert_eq!(used(&over_module(&sources, samples).unwrap()), offered(&[over_entries(samples)]));
+        assert_eq!(used(&covered_module(&sources, seen).unwrap()), offered(&[covered_entries(seen)]));
         for features in forward_features().into_iter().step_by(7) {
-            let used = used(&deferred_module(&sources, &features, samples).unwrap());
+            let used = used(&deferred_module(&sources, &features, seen).unwrap());
             let mut expected = self::used(&forward_module(&sources, &features).unwrap());
             // The draw's own uniform places it, and only shading reads the frame.
             expected.remove(&(0, FRAME_INSTANCES));
             expected.retain(|_, (_, stages)| stages.contains(ShaderStages::FRAGMENT));
             expected.values_mut().for_each(|(_, stages)| *stages = ShaderStages::FRAGMENT);
             expected.insert((0, FRAME_UNIFORM), ("uniform", ShaderStages::FRAGMENT));
-            let pulled = offered(&[Vec::new(), Vec::new(), pulled_entries(samples > 1)]);
+            let pulled = offered(&[Vec::new(), Vec::new(), pulled_entries(seen)]);
             expected.extend(pulled);
             assert_eq!(used, expected, "{features}");
         }

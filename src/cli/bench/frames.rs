@@ -20,7 +20,7 @@ pub(in crate::cli) struct SteadyFrames {
     pub(in crate::cli) quality: &'static str,
     pub(in crate::cli) msaa: u32,
     pub(in crate::cli) precision: &'static str,
-    /// From triangles to radiance, as it was taken: `forward` or `deferred`.
+    /// From triangles to radiance, as it was taken: `forward`, `deferred`, or `mixed`, which is forward over deferred.
     pub(in crate::cli) path: &'static str,
     pub(in crate::cli) draws: u32,
     pub(in crate::cli) triangles: u64,

@@ -1,33 +1,35 @@
 //! The pipelines of the deferred path, made when they are first needed.
 
 use crate::frame::PipelineKey;
-use crate::gpu::bindings::{covered_layout, pulled_layout, visibility_layout};
+use crate::gpu::bindings::{covered_layout, over_layout, pulled_layout, visibility_layout};
 use crate::gpu::formats;
 use crate::gpu::pipeline::{
     DepthTarget, FullscreenDepth, FullscreenTarget, depth_state, fullscreen_pipeline, primitive_state,
 };
 use crate::gpu_scene::GpuScene;
 use crate::shader::{
-    Composed, ForwardFeatures, ShaderError, ShaderSources, covered_module, create_module, deferred_module,
-    visibility_module,
+    Composed, ForwardFeatures, Seen, ShaderError, ShaderSources, covered_module, create_module, deferred_module,
+    over_module, visibility_module,
 };
 use std::collections::HashMap;
 
 /// Pipelines by what they draw and into what.
 #[derive(Debug, Default)]
 pub struct DeferredPipelines {
-    layouts: HashMap<u32, Layouts>,
+    layouts: HashMap<Seen, Layouts>,
     modules: HashMap<String, (Composed, wgpu::ShaderModule)>,
     visibility: HashMap<(bool, bool, u32), wgpu::RenderPipeline>,
-    covered: HashMap<u32, wgpu::RenderPipeline>,
-    shading: HashMap<(ForwardFeatures, ShadingTarget), wgpu::RenderPipeline>,
+    covered: HashMap<(Seen, bool), wgpu::RenderPipeline>,
+    over: HashMap<ShadingTarget, wgpu::RenderPipeline>,
+    shading: HashMap<(ForwardFeatures, ShadingTarget, bool), wgpu::RenderPipeline>,
 }
 
-/// By number of samples.
+/// By what is read of the picture.
 #[derive(Debug, Clone)]
 pub(super) struct Layouts {
     pub(super) visibility: wgpu::BindGroupLayout,
     pub(super) covered: wgpu::BindGroupLayout,
+    pub(super) over: Option<wgpu::BindGroupLayout>,
     pub(super) pulled: wgpu::BindGroupLayout,
 }
 
@@ -35,7 +37,7 @@ pub(super) struct Layouts {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct ShadingTarget {
     pub(super) format: wgpu::TextureFormat,
-    pub(super) samples: u32,
+    pub(super) seen: Seen,
     /// Coverage is 1 from the start.
     pub(super) is_filled: bool,
 }
@@ -59,13 +61,14 @@ impl DeferredPipelines {
         self.modules.iter().map(|(name, (composed, _))| (name.clone(), composed.text.as_str()))
     }
 
-    pub(super) fn layouts(&mut self, device: &wgpu::Device, samples: u32) -> Layouts {
+    pub(super) fn layouts(&mut self, device: &wgpu::Device, seen: Seen) -> Layouts {
         let make = || Layouts {
             visibility: visibility_layout(device),
-            covered: covered_layout(device, samples > 1),
-            pulled: pulled_layout(device, samples > 1),
+            covered: covered_layout(device, seen),
+            over: seen.under.then(|| over_layout(device, seen.samples)),
+            pulled: pulled_layout(device, seen),
         };
-        self.layouts.entry(samples).or_insert_with(make).clone()
+        self.layouts.entry(seen).or_insert_with(make).clone()
     }
 
     fn module(
@@ -90,16 +93,16 @@ impl DeferredPipelines {
         sources: &ShaderSources,
         scene: &GpuScene,
         key: &PipelineKey,
-        samples: u32,
+        seen: Seen,
     ) -> Result<wgpu::RenderPipeline, ShaderError> {
-        let index = (key.mirrored, key.cull_back, samples);
+        let index = (key.mirrored, key.cull_back, seen.samples);
         if let Some(pipeline) = self.visibility.get(&index) {
             return Ok(pipeline.clone());
         }
         let module = self.module(device, "visibility".to_owned(), || visibility_module(sources))?;
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("visibility"),
-            bind_group_layouts: &[Some(&scene.frame_layout), Some(&self.layouts(device, samples).visibility)],
+            bind_group_layouts: &[Some(&scene.frame_layout), Some(&self.layouts(device, seen).visibility)],
             immediate_size: 0,
         });
         let position = wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 0 };
@@ -118,7 +121,7 @@ impl DeferredPipelines {
             },
             primitive: primitive_state(wgpu::PrimitiveTopology::TriangleList, key.mirrored, key.cull_back),
             depth_stencil: Some(depth_state(DepthTarget::OWN, true)),
-            multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+            multisample: wgpu::MultisampleState { count: seen.samples, ..Default::default() },
             fragment: Some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some("fragment"),
@@ -137,16 +140,41 @@ impl DeferredPipelines {
         &mut self,
         device: &wgpu::Device,
         sources: &ShaderSources,
-        samples: u32,
+        (bound, under): (Seen, bool),
     ) -> Result<wgpu::RenderPipeline, ShaderError> {
-        if let Some(pipeline) = self.covered.get(&samples) {
+        if let Some(pipeline) = self.covered.get(&(bound, under)) {
             return Ok(pipeline.clone());
         }
-        let module = self.module(device, format!("covered.{samples}"), || covered_module(sources, samples))?;
+        let seen = Seen { under, ..bound };
+        let module = self.module(device, format!("covered.{seen}"), || covered_module(sources, seen))?;
         let into = FullscreenTarget { format: None, samples: 1, depth: FullscreenDepth::Written, blend: None };
-        let layouts = self.layouts(device, samples);
+        let layouts = self.layouts(device, bound);
         let pipeline = fullscreen_pipeline(device, "covered", &[Some(&layouts.covered)], &module, into);
-        self.covered.insert(samples, pipeline.clone());
+        self.covered.insert((bound, under), pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// What was drawn over, into the radiance.
+    pub(super) fn over(
+        &mut self,
+        device: &wgpu::Device,
+        sources: &ShaderSources,
+        target: ShadingTarget,
+    ) -> Result<wgpu::RenderPipeline, ShaderError> {
+        if let Some(pipeline) = self.over.get(&target) {
+            return Ok(pipeline.clone());
+        }
+        let samples = target.seen.samples;
+        let module = self.module(device, format!("over.{samples}"), || over_module(sources, samples))?;
+        let into = FullscreenTarget {
+            format: Some(target.format),
+            samples: 1,
+            depth: FullscreenDepth::Behind(DepthTarget::OWN),
+            blend: Some(target.blend()),
+        };
+        let layouts = self.layouts(device, target.seen);
+        let pipeline = fullscreen_pipeline(device, "over", &[layouts.over.as_ref()], &module, into);
+        self.over.insert(target, pipeline.clone());
         Ok(pipeline)
     }
 
@@ -157,15 +185,16 @@ impl DeferredPipelines {
         sources: &ShaderSources,
         scene: &GpuScene,
         features: &ForwardFeatures,
-        target: ShadingTarget,
+        (target, under): (ShadingTarget, bool),
     ) -> Result<wgpu::RenderPipeline, ShaderError> {
         let features = features.module_key();
-        if let Some(pipeline) = self.shading.get(&(features, target)) {
+        if let Some(pipeline) = self.shading.get(&(features, target, under)) {
             return Ok(pipeline.clone());
         }
-        let name = format!("deferred.{}+{features}", target.samples);
-        let module = self.module(device, name, || deferred_module(sources, &features, target.samples))?;
-        let layouts = self.layouts(device, target.samples);
+        let seen = Seen { under, ..target.seen };
+        let name = format!("deferred.{seen}+{features}");
+        let module = self.module(device, name, || deferred_module(sources, &features, seen))?;
+        let layouts = self.layouts(device, target.seen);
         let material = scene.material_layouts.get(&features.material);
         let groups = [Some(&scene.frame_layout), material, Some(&layouts.pulled)];
         let into = FullscreenTarget {
@@ -175,7 +204,7 @@ impl DeferredPipelines {
             blend: Some(target.blend()),
         };
         let pipeline = fullscreen_pipeline(device, "deferred", &groups, &module, into);
-        self.shading.insert((features, target), pipeline.clone());
+        self.shading.insert((features, target, under), pipeline.clone());
         Ok(pipeline)
     }
 }
