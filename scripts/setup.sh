@@ -2,7 +2,7 @@
 # Checks that the project can be built and that a Vulkan driver is there; installs Mesa's software driver where neither
 # a question nor a password stands in the way. Changes nothing else, and nothing at all when all is there.
 # Tests use more where it is there, and go without it otherwise: `window` installs an X server without a screen and input for it,
-# for those of the viewer, `browser` installs Chromium and GNU parallel, for those of suites.
+# for those of the viewer, `browser` installs Chromium and GNU parallel, `cluster` installs Slurm, for those of suites.
 set -eu
 
 say() { printf '%s\n' "setup: $*" >&2; }
@@ -87,6 +87,7 @@ for wanted in "$@"; do
     case $wanted in
     window) install_for_tests Xvfb xdotool xvfb xdotool ;;
     browser) install_for_tests chromium parallel chromium parallel ;;
+    cluster) install_for_tests sbatch slurmd slurm-wlm slurm-client ;;
     esac
 done
 

@@ -102,13 +102,23 @@ fn drawn(
     options: CaptureOptions,
     (choice, expected): (PathChoice, RenderPath),
 ) -> RadianceImage {
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue).with_paths(choice);
+    drawn_by(gpu, &mut renderer, scene, (view, options), expected)
+}
+
+fn drawn_by(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    scene: &Scene,
+    (view, options): (&View, CaptureOptions),
+    expected: RenderPath,
+) -> RadianceImage {
     let bake = BakeOptions { suns: view.quality.parts_suns(), ..Default::default() };
     let maps = scene.environment.as_ref().map(|e| environment::bake(&e.image, &bake, &Silent));
-    let mut renderer = Renderer::new(&gpu.device, &gpu.queue).with_paths(choice);
     let mut uploaded = renderer.upload(&gpu.device, &gpu.queue, scene, maps.as_ref()).unwrap();
     let target = CaptureTarget::new(gpu, view, options).unwrap();
     let wanted = Wanted { radiance: true, display: true };
-    let frame = submit(gpu, &mut renderer, &mut uploaded, view, &target, wanted).unwrap();
+    let frame = submit(gpu, renderer, &mut uploaded, view, &target, wanted).unwrap();
     assert_eq!(frame.stats.path, expected);
     frame.wait(gpu).unwrap().radiance.unwrap()
 }
@@ -225,6 +235,22 @@ fn a_model_with_textures_looks_alike_on_both_paths() {
 const HELMET_DIFFERENCE: f64 = 6e-4;
 
 /// Mesa 22.3 compiles uniforms into a shader that decide in it, and crashed on a sun that did.
+#[test]
+fn one_renderer_takes_the_deferred_path_for_scenes_of_other_lights() {
+    let gpu = gpu(Precision::Float);
+    let dark = Scene { environment: None, ..scene() };
+    let mut without_lamp = scene();
+    without_lamp.nodes.iter_mut().for_each(|node| node.light = None);
+    let mut renderer = Renderer::new(&gpu.device, &gpu.queue).with_paths(PathChoice::Deferred);
+    let options = CaptureOptions { samples: 1, precision: Precision::Float };
+    let deferred = (PathChoice::Deferred, RenderPath::Deferred);
+    for scene in [&without_lamp, &dark, &scene(), &dark] {
+        let view = front_view(SIDE_PX);
+        let shared = drawn_by(&gpu, &mut renderer, scene, (&view, options), RenderPath::Deferred);
+        assert_eq!(shared.texels, drawn(&gpu, scene, &view, options, deferred).texels);
+    }
+}
+
 #[test]
 fn suns_are_drawn_by_both_paths() {
     let gpu = gpu(Precision::Float);

@@ -1,10 +1,14 @@
 //! One suite in one process and in parts: the reports are the same, by whatever the parts are started.
 
+mod recipes;
+mod samples;
+mod slurm;
+
 use crate::cli::stderr;
 use crate::support::program;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// Small pictures of two scenes; 14 cases, of which one is skipped and one fails.
 const SUITE: &str = r#"
@@ -54,6 +58,11 @@ fn suite() -> tempfile::TempDir {
 
 fn specula(folder: &Path, arguments: &[&str]) -> Output {
     program().current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// The same with prefiltered panoramas kept in a folder.
+fn specula_with_cache(folder: &Path, cache: &Path, arguments: &[&str]) -> Output {
+    program().current_dir(folder).env("SPECULA_CACHE_DIR", cache).args(arguments).output().unwrap()
 }
 
 /// The report in a folder, without times.
@@ -127,64 +136,4 @@ fn what_is_asked_of_a_part_is_checked() {
     let parts = [1, 2, 3].map(|number| listed(&["--partition", &format!("slice:{number}/3")]));
     assert_eq!(parts.concat(), listed(&[]), "slices are in the order of the suite");
     assert_eq!(parts.map(|part| part.lines().count()), [4, 5, 5]);
-}
-
-/// The commands of a recipe in docs/sharding.md.
-fn recipe(name: &str) -> String {
-    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/sharding.md")).unwrap();
-    let (_, rest) = text.split_once(&format!("<!-- {name} -->\n```sh\n")).expect("the recipe is there");
-    rest.split_once("```").expect("the recipe ends").0.to_owned()
-}
-
-/// Follows a recipe in the folder, with the program on the path.
-fn follow(folder: &Path, recipe: &str) -> Output {
-    let program = program();
-    let own = Path::new(program.get_program()).parent().unwrap().to_owned();
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut shell = Command::new("sh");
-    shell.env("PATH", std::env::join_paths([own].into_iter().chain(std::env::split_paths(&path))).unwrap());
-    shell.envs(program.get_envs().filter_map(|(name, value)| Some((name, value?))));
-    shell.current_dir(folder).env("HOME", folder).args(["-ec", recipe]).output().unwrap()
-}
-
-/// Follows a recipe for 4 parts with other numbers of them.
-fn follow_with(recipe: &str, four: &str, numbers: &[usize]) {
-    let suite = suite();
-    let folder = suite.path();
-    let whole = whole(folder);
-    assert_eq!(whole["cases_in_suite"], json!(14));
-    assert!(recipe.contains(four), "{recipe}");
-    for number in numbers {
-        let output = follow(folder, &recipe.replace(four, &four.replace('4', &number.to_string())));
-        assert_eq!(output.status.code(), Some(1), "the furnace fails: {}", stderr(&output));
-        assert_eq!(std::fs::read_dir(folder.join("parts")).unwrap().count(), *number);
-        assert_eq!(timeless(&folder.join("report")), whole, "{number} parts");
-        for name in ["report", "parts"] {
-            std::fs::remove_dir_all(folder.join(name)).unwrap();
-        }
-    }
-}
-
-/// What a command prints when it works.
-fn printed(program: &str, argument: &str) -> Option<String> {
-    let output = Command::new(program).arg(argument).output().ok().filter(|output| output.status.success())?;
-    String::from_utf8(output.stdout).ok()
-}
-
-#[test]
-fn the_recipe_for_gnu_parallel_works() {
-    if printed("parallel", "--version").is_some_and(|version| version.starts_with("GNU parallel")) {
-        follow_with(&recipe("parallel"), "parts=4", &[1, 2, 4]);
-    } else {
-        println!("skipped: no GNU parallel; apt-get install parallel");
-    }
-}
-
-#[test]
-fn the_recipe_for_slurm_works() {
-    if printed("sinfo", "--noheader").is_some_and(|nodes| nodes.contains("idle")) {
-        follow_with(&recipe("slurm"), "--array=1-4", &[1, 2, 4]);
-    } else {
-        println!("skipped: no Slurm with an idle node");
-    }
 }

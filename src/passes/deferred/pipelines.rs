@@ -8,8 +8,8 @@ use crate::gpu::pipeline::{
 };
 use crate::gpu_scene::GpuScene;
 use crate::shader::{
-    Composed, ForwardFeatures, Seen, ShaderError, ShaderSources, covered_module, create_module, deferred_module,
-    over_module, visibility_module,
+    Composed, ForwardFeatures, SceneFeatures, Seen, ShaderError, ShaderSources, covered_module, create_module,
+    deferred_module, over_module, visibility_module,
 };
 use std::collections::HashMap;
 
@@ -18,7 +18,8 @@ use std::collections::HashMap;
 pub struct DeferredPipelines {
     layouts: HashMap<Seen, Layouts>,
     modules: HashMap<String, (Composed, wgpu::ShaderModule)>,
-    visibility: HashMap<(bool, bool, u32), wgpu::RenderPipeline>,
+    /// A pipeline fits the group of a frame by what the scene has of light.
+    visibility: HashMap<(SceneFeatures, bool, bool, u32), wgpu::RenderPipeline>,
     covered: HashMap<(Seen, bool), wgpu::RenderPipeline>,
     over: HashMap<ShadingTarget, wgpu::RenderPipeline>,
     shading: HashMap<(ForwardFeatures, ShadingTarget, bool), wgpu::RenderPipeline>,
@@ -95,7 +96,7 @@ impl DeferredPipelines {
         key: &PipelineKey,
         seen: Seen,
     ) -> Result<wgpu::RenderPipeline, ShaderError> {
-        let index = (key.mirrored, key.cull_back, seen.samples);
+        let index = (scene.features, key.mirrored, key.cull_back, seen.samples);
         if let Some(pipeline) = self.visibility.get(&index) {
             return Ok(pipeline.clone());
         }
