@@ -85,9 +85,10 @@ struct SuiteArgs {
 }
 
 /// What the scenes of the suite have of their own.
-const NOT_OF_THE_SUITE: [&str; 24] = [
+const NOT_OF_THE_SUITE: [&str; 25] = [
     "model",
     "scene",
+    "variant",
     "overrides",
     "env",
     "env_rotation",

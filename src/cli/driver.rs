@@ -23,7 +23,7 @@ pub(super) struct DriverArgs {
 }
 
 /// How a frame is drawn.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Renderer")]
 pub(super) struct FrameArgs {
     /// Samples a pixel of the rasteriser.
@@ -90,6 +90,11 @@ impl From<PrecisionArg> for Precision {
 impl FrameArgs {
     pub(super) fn precision(&self) -> Precision {
         self.precision.into()
+    }
+
+    /// The same with one sample a pixel, which is shaded in its middle.
+    pub(super) fn with_one_sample(&self) -> Self {
+        Self { msaa: 1, ..self.clone() }
     }
 
     pub(super) fn capture_options(&self) -> CaptureOptions {

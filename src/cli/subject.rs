@@ -6,7 +6,7 @@ use super::light::LightArgs;
 use super::overrides;
 use super::parallel::beside;
 use super::stats::Stopwatch;
-use crate::import::{ImportOptions, Imported, SceneChoice, model_from_path, model_from_slice};
+use crate::import::{Choice, ImportOptions, Imported, model_from_path, model_from_slice};
 use crate::progress::Progress;
 use crate::scene::{Environment, Scene};
 use std::io::Read;
@@ -20,6 +20,9 @@ pub(super) struct SubjectArgs {
     /// Which scene of the file, by number or name, instead of its default.
     #[arg(long, value_name = "N|NAME")]
     scene: Option<String>,
+    /// Which variant of its materials (KHR_materials_variants), by number or name, instead of those without any.
+    #[arg(long, value_name = "N|NAME")]
+    variant: Option<String>,
     /// Set a number of materials: their name or index (* stands for any text), a parameter, and its value. A disney.*
     /// parameter turns a material into a Disney one; colours are #rrggbb or r,g,b; a texture of the parameter goes.
     #[arg(long = "override", value_name = "NAME.PARAMETER=VALUE")]
@@ -36,6 +39,7 @@ pub(super) struct Loaded {
     pub(super) warnings: Vec<String>,
     pub(super) scene_names: Vec<Option<String>>,
     pub(super) scene_index: Option<usize>,
+    pub(super) variant_names: Vec<String>,
     pub(super) extensions_used: Vec<String>,
 }
 
@@ -60,6 +64,14 @@ impl SubjectArgs {
         &self.environment.cache
     }
 
+    /// Whether the lights that were asked for are such, of which the flags' types know nothing.
+    ///
+    /// # Errors
+    /// One line with the first that is none.
+    pub(super) fn check_lights(&self) -> Result<(), CliError> {
+        self.lights.parse().map(drop)
+    }
+
     /// Keeps prefiltered panoramas as `cache` says.
     pub(super) fn set_cache(&mut self, cache: &CacheArgs) {
         self.environment.cache = cache.clone();
@@ -69,15 +81,16 @@ impl SubjectArgs {
     pub(super) fn has_model_of(&self, other: &Self) -> bool {
         self.model == other.model
             && self.scene == other.scene
+            && self.variant == other.variant
             && self.overrides == other.overrides
             && self.lights == other.lights
     }
 
     /// All flags but the model, as text: the same text is the same picture of the same files.
     pub(super) fn settings(&self) -> String {
-        let Self { scene, overrides, environment, lights, .. } = self;
+        let Self { scene, variant, overrides, environment, lights, .. } = self;
         let surroundings = (&environment.env, environment.env_rotation, environment.env_intensity);
-        format!("{scene:?} {overrides:?} {surroundings:?} {lights:?}")
+        format!("{scene:?} {variant:?} {overrides:?} {surroundings:?} {lights:?}")
     }
 
     /// What lights the scene from around, without the rest.
@@ -130,7 +143,7 @@ impl SubjectArgs {
             || watch.time("decode", || self.import(sampled_textures_only, progress)),
             || watch.time("environment decode", || self.environment.load()),
         );
-        let Imported { mut scene, warnings, scene_names, scene_index, extensions_used } = imported?;
+        let Imported { mut scene, warnings, scene_names, scene_index, variant_names, extensions_used } = imported?;
         let mut warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         overrides::apply(&mut scene, &self.overrides)?;
         scene.environment = environment?;
@@ -138,15 +151,17 @@ impl SubjectArgs {
             warnings.extend(light.note);
             scene.add_light(light.light, light.position_in_world, light.direction_in_world);
         }
-        Ok(Loaded { scene, warnings, scene_names, scene_index, extensions_used })
+        Ok(Loaded { scene, warnings, scene_names, scene_index, variant_names, extensions_used })
     }
 
     fn import(&self, sampled_textures_only: bool, progress: &dyn Progress) -> Result<Imported, CliError> {
-        let scene = self.scene.as_ref().map(|scene| match scene.parse() {
-            Ok(index) => SceneChoice::Index(index),
-            Err(_) => SceneChoice::Name(scene.clone()),
+        let [scene, variant] = [&self.scene, &self.variant].map(|wish| {
+            wish.as_ref().map(|wish| wish.parse().map_or_else(|_| Choice::Name(wish.clone()), Choice::Index))
         });
-        load_model(self.model(), &ImportOptions { scene, sampled_textures_only, progress, ..Default::default() })
+        load_model(
+            self.model(),
+            &ImportOptions { scene, variant, sampled_textures_only, progress, ..Default::default() },
+        )
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// The extensions that are imported.
-pub const SUPPORTED_EXTENSIONS: [&str; 9] = [
+pub const SUPPORTED_EXTENSIONS: [&str; 10] = [
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -16,6 +16,7 @@ pub const SUPPORTED_EXTENSIONS: [&str; 9] = [
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
@@ -156,6 +157,29 @@ impl Default for SpotCone {
     fn default() -> Self {
         Self { inner_cone_angle: 0.0, outer_cone_angle: std::f32::consts::FRAC_PI_4 }
     }
+}
+
+/// The variants of the document.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Variants {
+    pub(super) variants: Vec<Variant>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Variant {
+    pub(super) name: String,
+}
+
+/// The materials of a primitive by variant.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct VariantMappings {
+    pub(super) mappings: Vec<VariantMapping>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct VariantMapping {
+    pub(super) material: u64,
+    pub(super) variants: Vec<u64>,
 }
 
 /// The light on a node.

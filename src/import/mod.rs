@@ -8,6 +8,7 @@
 mod accessor;
 mod buffers;
 mod cameras;
+mod choice;
 mod container;
 mod document;
 mod environment;
@@ -32,8 +33,10 @@ mod tangents;
 pub(crate) mod tests;
 mod textures;
 mod topology;
+mod variants;
 mod vertices;
 
+pub use choice::Choice;
 pub use environment::{environment_from_path, environment_from_slice};
 pub use error::{ImportError, Place, Warning};
 pub use extensions::SUPPORTED_EXTENSIONS;
@@ -55,18 +58,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Which scene of a file is meant.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum SceneChoice {
-    Index(usize),
-    Name(String),
-}
-
 /// How a model is imported.
 #[derive(Clone)]
 pub struct ImportOptions<'a> {
     /// `None` takes the file's default scene, or the first.
-    pub scene: Option<SceneChoice>,
+    pub scene: Option<Choice>,
+    /// `None` takes the materials that primitives have without any variant (KHR_materials_variants).
+    pub variant: Option<Choice>,
     pub limits: Limits,
     /// Leaves out the textures that materials have but never sample: normal maps of unlit ones, emission times zero.
     /// Materials must not change after that.
@@ -80,7 +78,14 @@ pub struct ImportOptions<'a> {
 
 impl Default for ImportOptions<'_> {
     fn default() -> Self {
-        Self { scene: None, limits: Limits::default(), sampled_textures_only: false, progress: &Silent, sketch: None }
+        Self {
+            scene: None,
+            variant: None,
+            limits: Limits::default(),
+            sampled_textures_only: false,
+            progress: &Silent,
+            sketch: None,
+        }
     }
 }
 
@@ -88,6 +93,7 @@ impl std::fmt::Debug for ImportOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("ImportOptions")
             .field("scene", &self.scene)
+            .field("variant", &self.variant)
             .field("limits", &self.limits)
             .field("sampled_textures_only", &self.sampled_textures_only)
             .finish_non_exhaustive()
@@ -103,6 +109,8 @@ pub struct Imported {
     pub scene_names: Vec<Option<String>>,
     /// Which of them this is; `None` if the file has no scenes and all its nodes were taken.
     pub scene_index: Option<usize>,
+    /// The names of all variants of the file's materials, in its order.
+    pub variant_names: Vec<String>,
     /// The extensions that the file says it uses, whether or not they are among [`SUPPORTED_EXTENSIONS`].
     pub extensions_used: Vec<String>,
 }
@@ -168,8 +176,9 @@ fn import_model(
     let budget = Budget::new(options.limits.decoded_bytes);
     let resources = Resources::new(base_dir, &budget);
     let container = container::split(bytes, notes)?;
-    let document = document::parse(container.json, container.json_offset, notes)?;
+    let mut document = document::parse(container.json, container.json_offset, notes)?;
     references::check(&document)?;
+    let variant_names = variants::apply(&mut document.root, options.variant.as_ref(), notes)?;
     note_what_does_not_move(&document, notes);
 
     let root = &document.root;
@@ -216,7 +225,8 @@ fn import_model(
     scene.images = images?;
     let scene_names = root.scenes.iter().map(|scene| scene.name.clone()).collect();
     let extensions_used = root.extensions_used.clone();
-    Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index: chosen.index, extensions_used })
+    let scene_index = chosen.index;
+    Ok(Imported { scene, warnings: Vec::new(), scene_names, scene_index, variant_names, extensions_used })
 }
 
 fn forget_what_is_not_sampled(material: &mut Material) {

@@ -1,7 +1,7 @@
 //! The node tree: transforms, what hangs on the nodes, and which of them are in the chosen scene.
 
-use super::SceneChoice;
-use super::error::{Fault, Notes, quote};
+use super::choice::Choice;
+use super::error::{Fault, Notes};
 use super::extensions::{self, NodeLight};
 use super::references::within;
 use crate::scene::Node;
@@ -119,23 +119,12 @@ pub(super) struct ChosenScene {
 pub(super) fn choose_scene(
     root: &Root,
     nodes: &[Node],
-    choice: Option<&SceneChoice>,
+    choice: Option<&Choice>,
     notes: &mut Notes,
 ) -> Result<ChosenScene, Fault> {
-    let names = || {
-        let name = |(index, scene): (usize, &json::Scene)| scene.name.as_deref().map_or(index.to_string(), quote);
-        root.scenes.iter().take(20).enumerate().map(name).collect::<Vec<_>>().join(", ")
-    };
-    let unknown = |wish: String| {
-        Err(Fault::at("/scenes", format!("has no scene {wish}")).advise(format!("choose one of: {}", names())))
-    };
+    let names: Vec<Option<&str>> = root.scenes.iter().map(|scene| scene.name.as_deref()).collect();
     let index = match choice {
-        Some(&SceneChoice::Index(index)) if index >= root.scenes.len() => return unknown(index.to_string()),
-        Some(&SceneChoice::Index(index)) => index,
-        Some(SceneChoice::Name(name)) => match root.scenes.iter().position(|scene| scene.name.as_ref() == Some(name)) {
-            Some(index) => index,
-            None => return unknown(quote(name)),
-        },
+        Some(choice) => choice.find("scene", &names, "/scenes")?,
         None => root.scene.map_or(0, |scene| scene.value()),
     };
     let mut is_child = vec![false; nodes.len()];

@@ -196,6 +196,81 @@ fn cases_are_listed_skipped_and_in_error_one_by_one() {
 }
 
 #[test]
+fn variants_of_a_model_are_cases() {
+    let fixture = Fixture::new();
+    let text = std::fs::read_to_string(fixture.path("model.gltf")).unwrap();
+    let mut model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let variants = |value| serde_json::json!({ "KHR_materials_variants": value });
+    model["extensionsUsed"] = serde_json::json!(["KHR_lights_punctual", "KHR_materials_variants"]);
+    model["extensions"]["KHR_materials_variants"] =
+        serde_json::json!({ "variants": [{ "name": "blue" }, { "name": "as it is" }] });
+    model["materials"].as_array_mut().unwrap().push(serde_json::json!({
+        "name": "paint", "pbrMetallicRoughness": { "baseColorFactor": [0, 0, 1, 1], "metallicFactor": 0 }
+    }));
+    model["meshes"][0]["primitives"][0]["extensions"] =
+        variants(serde_json::json!({ "mappings": [{ "material": 1, "variants": [0] }] }));
+    fixture.write("model.gltf", &model.to_string());
+    let case = |name: &str, more: &str| CASE.replace("sphere", name) + more + "\n";
+    fixture.suite(
+        &[case("plain", ""), case("v", "matrix = { variant = ['blue', 'as it is'] }"), case("none", "variant = 'red'")]
+            .concat(),
+    );
+    let ran = fixture.run("test", &["--update", "new"]).expect(2);
+    let [plain, blue, same] = ["plain", "v/variant=blue", "v/variant=as_it_is"].map(|id| pixels(&fixture.golden(id)));
+    assert!(plain == same && plain != blue, "a variant shows its own materials");
+    let middle = &blue[4 * (48 * 96 + 48)..][..3];
+    assert!(middle[2] > 2 * middle[0].max(middle[1]), "{middle:?} is not blue");
+    let reason = ran.case("none")["reason"].as_str().unwrap();
+    let expected =
+        "/extensions/KHR_materials_variants/variants: has no variant \"red\"; choose one of: \"blue\", \"as it is\"";
+    assert!(reason.ends_with(expected), "{reason}");
+}
+
+#[test]
+fn goldens_of_no_case_are_told_and_removed_when_that_is_asked_for() {
+    let fixture = Fixture::new();
+    let second = CASE.replace("sphere", "old/second");
+    fixture.suite(&(CASE.to_owned() + &second));
+    let ran = fixture.bless();
+    assert!(!ran.stderr.contains("of no case"), "{}", ran.stderr);
+    fixture.suite(CASE);
+    // One of another suite in the same folder, and one from elsewhere.
+    std::fs::copy(fixture.golden("sphere"), fixture.golden("foreign")).unwrap();
+    let sidecar = std::fs::read_to_string(fixture.golden("old/second").with_extension("json")).unwrap();
+    std::fs::copy(fixture.golden("sphere"), fixture.golden("old/third")).unwrap();
+    let others = sidecar.replace("old/second", "old/third").replace("\"suite\": \"s\"", "\"suite\": \"t\"");
+    fixture.write("s.goldens/any/old/third.json", &others);
+    let ran = fixture.run("test", &[]).expect(0);
+    assert!(
+        ran.stderr.contains("of no case any more: ") && ran.stderr.contains("second.png; `specula"),
+        "{}",
+        ran.stderr
+    );
+    let ran = fixture.run("accept", &["--remove-unused"]).expect(0);
+    assert_eq!(ran.stdout, format!("removed {}\n", fixture.golden("old/second").display()));
+    assert!(!fixture.golden("old/second").with_extension("json").exists());
+    for id in ["sphere", "foreign", "old/third"] {
+        assert!(fixture.golden(id).exists(), "{id} is gone");
+    }
+    let ran = fixture.run("test", &[]).expect(0);
+    assert!(!ran.stderr.contains("of no case"), "{}", ran.stderr);
+}
+
+#[test]
+fn cases_that_failed_are_run_again_alone() {
+    let fixture = Fixture::new();
+    fixture.suite(&(CASE.to_owned() + &CASE.replace("sphere", "second")));
+    fixture.run("test", &["--failed"]).expect(2);
+    fixture.run("test", &["--update", "new", "--filter", "second"]).expect(0);
+    fixture.run("test", &[]).expect(1);
+    let ran = fixture.run("test", &["--failed", "--update", "new"]).expect(0);
+    assert_eq!(ran.report["cases"].as_array().unwrap().len(), 1, "{}", ran.report);
+    assert_eq!(ran.case("sphere")["golden_written"], true);
+    let ran = fixture.run("test", &["--failed"]).expect(2);
+    assert!(ran.stderr.contains("no such case has failed in the last run"), "{}", ran.stderr);
+}
+
+#[test]
 fn repetitions_are_the_same_bit_by_bit_and_so_are_runs() {
     let fixture = Fixture::new();
     fixture.suite(&format!("{CASE}matrix = {{ quality = ['draft', 'standard'], msaa = [1, 4] }}\n"));

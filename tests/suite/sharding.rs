@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
 
-/// Small pictures of two scenes; 14 cases, of which one is skipped and one fails.
+/// Small pictures of two scenes; 15 cases, of which one is skipped and one fails.
 const SUITE: &str = r#"
 [suite]
 bless = ["*"]
@@ -35,6 +35,13 @@ matrix = { tone-map = ["neutral", "aces", "agx"], exposure = ["-1", "0"] }
 name = "later"
 model = "showcase.glb"
 skip = { reason = "a test of skips", until = 9999-01-31 }
+
+[[case]]
+name = "truth"
+kind = "reference"
+model = "spheres.glb"
+samples = 4
+thresholds = ["flip.mean <= 0.5"]
 
 [[case]]
 name = "furnace"
@@ -84,7 +91,7 @@ fn whole(folder: &Path) -> Value {
     std::fs::remove_dir_all(folder.join("report")).unwrap();
     let states: Vec<&str> = report["cases"].as_array().unwrap().iter().filter_map(|c| c["status"].as_str()).collect();
     let count = |state: &str| states.iter().filter(|other| **other == state).count();
-    assert_eq!((count("pass"), count("skipped"), count("fail")), (12, 1, 1), "{states:?}");
+    assert_eq!((count("pass"), count("skipped"), count("fail")), (13, 1, 1), "{states:?}");
     report
 }
 
@@ -135,5 +142,5 @@ fn what_is_asked_of_a_part_is_checked() {
     };
     let parts = [1, 2, 3].map(|number| listed(&["--partition", &format!("slice:{number}/3")]));
     assert_eq!(parts.concat(), listed(&[]), "slices are in the order of the suite");
-    assert_eq!(parts.map(|part| part.lines().count()), [4, 5, 5]);
+    assert_eq!(parts.map(|part| part.lines().count()), [5, 5, 5]);
 }

@@ -82,8 +82,9 @@ const SINGLE: [&str; 6] = ["state", "format", "stats", "dump_wgsl", "TierArgs", 
 
 /// Flags that say what is drawn and from where; states and the lines of manifests have their own. (Structs with others
 /// inside are no groups to clap, so that some are named one by one.)
-pub(in crate::cli) const SUBJECT: [&str; 10] = [
+pub(in crate::cli) const SUBJECT: [&str; 11] = [
     "scene",
+    "variant",
     "overrides",
     "debug_view",
     "size",

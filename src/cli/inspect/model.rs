@@ -31,6 +31,7 @@ fn summary(args: &InspectArgs, loaded: &Loaded) -> Value {
         "specula": env!("CARGO_PKG_VERSION"),
         "model": args.subject.model().display().to_string(),
         "scene": { "index": loaded.scene_index, "name": scene.name, "of": loaded.scene_names },
+        "variants": loaded.variant_names,
         "counts": counts(scene),
         "bounds_m": bounds,
         "materials": scene.materials.iter().map(|of| material(scene, of)).collect::<Vec<_>>(),
@@ -170,6 +171,9 @@ fn text(report: &Value) -> String {
         let _ = writeln!(text, "  {head:12} {value}");
     };
     line("scene", format!("{} of {}", plain(&report["scene"]["index"]), list(&report["scene"]["of"])));
+    if report["variants"] != json!([]) {
+        line("variants", list(&report["variants"]));
+    }
     let counts = report["counts"].as_object().into_iter().flatten().filter(|(_, count)| **count != json!(0));
     line(
         "holds",

@@ -19,6 +19,9 @@ pub(in crate::cli) struct AcceptArgs {
     /// Names of cases, in which * stands for any text; all that failed or have no golden without any.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
+    /// Instead remove the goldens that the suite has drawn for cases that it has no more.
+    #[arg(long, conflicts_with_all = ["cases", "out"])]
+    remove_unused: bool,
     /// Where the run has left its pictures [default: the suite's name with .out, beside it].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -33,6 +36,11 @@ struct Accepted<'a> {
 
 pub(in crate::cli) fn run(args: &AcceptArgs) -> Result<(), CliError> {
     let suite = Suite::read(&args.suite, &CacheArgs::default())?;
+    if args.remove_unused {
+        let removed = suite.remove_unused_goldens()?;
+        let text: String = removed.iter().map(|path| format!("removed {}\n", path.display())).collect();
+        return output::write(Path::new("-"), text.as_bytes());
+    }
     let out = args.out.clone().unwrap_or_else(|| suite.default_out());
     let report = SuiteReport::read(&out)?;
     suite.check_may_bless(&report.adapter.class)?;

@@ -1,7 +1,7 @@
 //! Pictures of cases, and what they are judged by.
 
 use super::golden;
-use super::ingredients::{Gathering, Ingredients, channels, content_hash, size};
+use super::ingredients::{BesideTruth, Finding, Gathering, Ingredients, channels, content_hash, size};
 use super::report::Kind;
 use super::suite::Case;
 use crate::app::in_units;
@@ -10,6 +10,7 @@ use crate::cli::error::CliError;
 use crate::cli::shot::{Shot, ShotArgs};
 use crate::cli::stage::{Stage, pixels};
 use crate::cli::subject::SubjectArgs;
+use crate::reference::EstimateOptions;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
 use crate::scene::{Background, Channel, RadianceImage, View};
@@ -86,16 +87,18 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// As [`Self::draw`].
     pub(super) fn ingredients(&mut self, case: &'a Case) -> Result<Ingredients, CliError> {
-        let shot = case.args.shot();
-        self.load(shot.subject)?;
+        self.load(&case.args.subject)?;
+        // Edges are not measured, and four samples take three times as long. A fault may be in one of them alone.
+        let frame = case.args.frame.with_one_sample();
+        let shot = Shot { frame: &frame, ..case.args.shot() };
         let picture = self.view(shot, None)?;
-        let view =
-            View { size_px: size(picture.size_px), background: Background::Transparent, channel: None, ..picture };
+        let view = measured(&picture, size(picture.size_px));
         let place = self.upload(shot, &view)?;
-        let surroundings = self.surroundings(shot.subject)?;
+        let surroundings = self.surroundings(&case.args.subject)?;
         let scale = f64::from(picture.size_px.x) / f64::from(view.size_px.x);
         let mut gathering = Gathering::new(self.scene()?, &view, scale, &surroundings);
-        for (name, channel) in channels(self.scene()?) {
+        for (name, channel) in channels(self.scene()?, case.kind == Kind::Furnace) {
+            let shot = if channel == Channel::Nan { case.args.shot() } else { shot };
             let view = View { channel: Some(channel), ..view.clone() };
             let frame = self.frame(shot, &view, place, Wanted { radiance: true, display: false })?;
             if let Some(radiance) = frame.radiance {
@@ -103,6 +106,37 @@ impl<'a> Stage<'a> {
             }
         }
         Ok(gathering.finish())
+    }
+
+    /// What of the picture of a reference case is not the truth, part by part of its light.
+    ///
+    /// # Errors
+    /// As [`Self::draw`].
+    pub(super) fn beside_truth(&mut self, case: &'a Case) -> Result<Vec<Finding>, CliError> {
+        let frame = case.args.frame.with_one_sample();
+        self.load(&case.args.subject)?;
+        let shot = Shot { frame: &frame, ..case.args.shot() };
+        let picture = self.view(shot, None)?;
+        let view = measured(&picture, BesideTruth::size(picture.size_px));
+        let place = self.upload(shot, &view)?;
+        let asked = case.args.truth.options(self.progress);
+        let options = EstimateOptions { bounces: 0, ..BesideTruth::options(asked) };
+        let mut beside = BesideTruth::new(self.scene()?, &view);
+        let terms: Vec<_> = BesideTruth::terms(self.scene()?).collect();
+        for term in terms {
+            let view = View { term: Some(term), ..view.clone() };
+            let drawn = self.frame(shot, &view, place, Wanted { radiance: true, display: false })?;
+            if let Some(drawn) = drawn.radiance {
+                beside.take(term, &drawn, &estimate(self.scene()?, &view, &options));
+            }
+        }
+        if asked.bounces > 0 {
+            let with = EstimateOptions { bounces: asked.bounces, ..options };
+            let [without, with] =
+                [options, with].map(|options| self.scene().map(|scene| estimate(scene, &view, &options)));
+            beside.take_bounces(&without?, &with?, asked.bounces);
+        }
+        Ok(beside.findings())
     }
 
     /// The environment by name and, of a file, by content.
@@ -134,6 +168,11 @@ impl<'a> Stage<'a> {
         let truth = estimate(self.scene()?, view, &args.truth.options(self.progress));
         Ok(to_srgb8(&truth.radiance, view))
     }
+}
+
+/// The view of a picture without what is behind the surfaces, of another size.
+fn measured(picture: &View, size_px: UVec2) -> View {
+    View { size_px, background: Background::Transparent, channel: None, ..picture.clone() }
 }
 
 fn milliseconds(since: Instant) -> f64 {

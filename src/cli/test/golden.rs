@@ -28,16 +28,22 @@ pub(super) struct Golden {
 struct Sidecar {
     #[serde(flatten)]
     provenance: Provenance,
-    /// What the picture was made of; none where that could not be found out, or was not by an earlier version.
-    #[serde(default)]
+    /// What the picture was made of; none where that could not be found out, or another version says it otherwise.
+    #[serde(default, deserialize_with = "if_it_can_be_read")]
     ingredients: Option<Ingredients>,
 }
 
+fn if_it_can_be_read<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Option<Ingredients>, D::Error> {
+    let value = serde_json::Value::deserialize(from)?;
+    Ok(serde_json::from_value(value).ok())
+}
+
 /// A [`Sidecar`] as JSON: the provenance for people, then a line for each material and quantity, as there are many numbers.
+/// No text has quotes that are not escaped, so that nothing inside of one is cut.
 fn sidecar_text(provenance: &Provenance, ingredients: Option<&Ingredients>) -> serde_json::Result<String> {
     let text = serde_json::to_string_pretty(provenance)?;
     let Some(ingredients) = ingredients else { return Ok(format!("{text}\n")) };
-    let made_of = serde_json::to_string(ingredients)?.replace("{\"name\":", "\n{\"name\":");
+    let made_of = serde_json::to_string(ingredients)?.replace("{\"name\":", "\n{\"name\":").replace("[\"", "\n[\"");
     let head = text.trim_end_matches('}').trim_end();
     Ok(format!("{head},\n  \"ingredients\": {made_of}\n}}\n"))
 }
@@ -157,6 +163,11 @@ pub(super) fn ingredients(golden: &Path, picture_hash: &str) -> Option<Ingredien
     sidecar(golden).filter(|sidecar| sidecar.provenance.picture_hash == picture_hash)?.ingredients
 }
 
+/// The suite and the case that a golden was drawn for, if that stands beside it.
+pub(super) fn recorded(golden: &Path) -> Option<(String, String)> {
+    sidecar(golden).map(|sidecar| (sidecar.provenance.suite, sidecar.provenance.case))
+}
+
 fn sidecar(golden: &Path) -> Option<Sidecar> {
     serde_json::from_slice(&std::fs::read(golden.with_extension("json")).ok()?).ok()
 }
@@ -175,8 +186,13 @@ mod tests {
     fn goldens_are_read_as_they_were_written() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("set/a/b.png");
-        let ingredients =
-            Ingredients { size_px: [16, 4], scale: 1.0, lights: vec!["a lamp".into()], materials: Vec::new() };
+        let ingredients = Ingredients {
+            size_px: [16, 4],
+            scale: 1.0,
+            lights: vec!["a lamp".into()],
+            materials: Vec::new(),
+            left_out: 7,
+        };
         for alpha in [255, 128] {
             let rgba: Vec<u8> = (0..64).flat_map(|i| [i, 2 * i, 255 - i, alpha]).collect();
             let png = encode(16, 4, &rgba, &provenance()).unwrap();

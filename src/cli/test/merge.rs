@@ -2,7 +2,7 @@
 
 use super::judge::accept_command;
 use super::publish::{self, PublishArgs};
-use super::report::{CaseReport, SuiteReport};
+use super::report::{CaseReport, Kind, SuiteReport};
 use super::verdicts::visible;
 use super::{blobs, text, verdict};
 use crate::cli::error::CliError;
@@ -151,10 +151,14 @@ fn merge(parts: Vec<Part>, out: &Path) -> Result<SuiteReport, CliError> {
     Ok(merged)
 }
 
-/// Where the run had its pictures may be another machine. A golden keeps its name: it belongs to the suite.
+/// Where the run had its pictures may be another machine. A golden keeps its name: it belongs to the suite; a truth is of the
+/// run.
 fn point_to_blobs(case: &mut CaseReport, out: &Path) {
     let path = |blob: &Option<String>| blob.as_ref().map(|hash| out.join(blobs::file_of(hash)));
     case.paths.actual = path(&case.blobs.actual);
     case.paths.difference = path(&case.blobs.difference);
     case.paths.heat_map = path(&case.blobs.heat_map);
+    if case.kind == Kind::Reference {
+        case.paths.golden = path(&case.blobs.golden);
+    }
 }

@@ -26,6 +26,7 @@ mod schema;
 mod second_look;
 mod suite;
 mod text;
+mod unused;
 mod verdicts;
 
 pub(super) use accept::{AcceptArgs, run as accept};
@@ -64,6 +65,9 @@ pub(super) struct TestArgs {
     /// Take the cases with such names alone; * stands for any text. Repeat for more.
     #[arg(long, value_name = "GLOB")]
     filter: Vec<String>,
+    /// Take the cases alone that failed in the last run into the same folder, or had no golden.
+    #[arg(long)]
+    failed: bool,
     /// Draw every case so often, from the upload on, and fail where a single bit differs.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeat: u32,
@@ -95,7 +99,11 @@ pub(super) struct TestArgs {
 pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     let start = Instant::now();
     let suite = Suite::read(&args.suite, &args.cache)?;
-    let chosen = chosen(&suite, &args.filter)?;
+    let out = args.out.clone().unwrap_or_else(|| suite.default_out());
+    let mut chosen = chosen(&suite, &args.filter)?;
+    if args.failed {
+        chosen = still_broken(&chosen, &out)?;
+    }
     let (cases, part) = args.part.take(&chosen)?;
     if args.list {
         let names: String = cases.iter().map(|case| format!("{}\n", case.id)).collect();
@@ -109,7 +117,6 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     if args.update.is_some() {
         suite.check_may_bless(&adapter.class)?;
     }
-    let out = args.out.clone().unwrap_or_else(|| suite.default_out());
     publish::forget(&out)?;
     suite.clear_stale_goldens();
     let progress = StderrProgress::new(args.quiet);
@@ -135,7 +142,33 @@ pub(super) fn run(args: &TestArgs) -> Result<(), CliError> {
     publish::publish(&report, &out, &args.publish)?;
     let text = if args.json { report.json()? } else { text::text(&report, &out) };
     output::write(Path::new("-"), text.as_bytes())?;
+    if !args.quiet {
+        warn_of_unused(&suite);
+    }
     verdict(&report)
+}
+
+/// Those of the cases that the last run into the folder has not passed.
+fn still_broken<'a>(cases: &[&'a Case], out: &Path) -> Result<Vec<&'a Case>, CliError> {
+    let report = SuiteReport::read(out)?;
+    let is_broken = |case: &&&Case| report.cases.iter().any(|other| other.id == case.id && other.status.is_broken());
+    let broken: Vec<&Case> = cases.iter().filter(is_broken).copied().collect();
+    if broken.is_empty() {
+        return Err(CliError::Usage(format!("{}: no such case has failed in the last run", out.display())));
+    }
+    Ok(broken)
+}
+
+fn warn_of_unused(suite: &Suite) {
+    let unused = suite.unused_goldens();
+    if let Some(first) = unused.first() {
+        let more = if unused.len() > 1 { format!(" and {} more", unused.len() - 1) } else { String::new() };
+        eprintln!(
+            "specula: warning: of no case any more: {}{more}; `specula accept {} --remove-unused` removes such goldens",
+            first.display(),
+            suite.file.display()
+        );
+    }
 }
 
 /// The cases that fit one of the patterns; all without patterns.

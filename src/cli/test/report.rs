@@ -112,7 +112,7 @@ pub(in crate::cli) struct CaseReport {
     pub(in crate::cli) provenance: Option<Provenance>,
     /// Of the golden, as far as it says.
     pub(in crate::cli) golden_provenance: Option<Provenance>,
-    /// What has moved since the golden was drawn, where the case fails.
+    /// What has moved since the golden was drawn, or is not as the truth or a furnace has it, where the case fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(in crate::cli) moved: Vec<Finding>,
     /// Of the picture of this run, where it could become the golden.

@@ -65,7 +65,7 @@ impl Plan<'_> {
         for index in again {
             let start = Instant::now();
             let (case, report) = (self.cases[index], &mut reports[index]);
-            self.judge.look_again(case, report, stage.ingredients(case));
+            self.judge.look_again(stage, case, report);
             report.times.judge_ms += start.elapsed().as_secs_f64() * 1e3;
             progress.advance(1);
         }

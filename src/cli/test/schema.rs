@@ -104,7 +104,7 @@ fn full() -> SuiteReport {
 }
 
 fn ingredients() -> Ingredients {
-    let quantity = Quantity { name: "metallic".into(), mean: [0.5; 3], spread: [0.1; 3], sketch: "00".repeat(64) };
+    let quantity = |sketch| Quantity { name: "metallic".into(), mean: [0.5; 3], spread: [0.1; 3], sketch };
     let texture = TextureHash { slot: "base_color".into(), hash: "0f".repeat(8) };
     let material = MaterialIngredients {
         name: "paint".into(),
@@ -112,9 +112,9 @@ fn ingredients() -> Ingredients {
         measured: 6,
         center_px: [3.5, 4.0],
         textures: vec![texture],
-        quantities: vec![quantity],
+        quantities: vec![quantity(None), quantity(Some([1.0; 16]))],
     };
-    Ingredients { size_px: [8, 8], scale: 2.0, lights: vec!["a lamp".into()], materials: vec![material] }
+    Ingredients { size_px: [8, 8], scale: 2.0, lights: vec!["a lamp".into()], materials: vec![material], left_out: 3 }
 }
 
 /// Pointers of all fields of the value, with the items of an array taken together.

@@ -13,3 +13,4 @@ mod nodes;
 mod resources;
 pub(crate) mod samples;
 mod tangents;
+mod variants;

@@ -1,7 +1,7 @@
 //! Node trees, scenes, cameras, lights.
 
 use super::builder::*;
-use crate::import::{ImportOptions, SceneChoice, model_from_slice};
+use crate::import::{Choice, ImportOptions, model_from_slice};
 use crate::scene::{LightKind, Projection, Scene};
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::{Value, json};
@@ -92,7 +92,7 @@ fn three_scenes() -> Asset {
     asset
 }
 
-fn choose(asset: &Asset, scene: Option<SceneChoice>) -> Result<Scene, String> {
+fn choose(asset: &Asset, scene: Option<Choice>) -> Result<Scene, String> {
     let options = ImportOptions { scene, ..ImportOptions::default() };
     let imported = model_from_slice(&asset.glb(), "model", None, &options).map_err(|error| error.to_string())?;
     Ok(imported.scene)
@@ -102,10 +102,10 @@ fn choose(asset: &Asset, scene: Option<SceneChoice>) -> Result<Scene, String> {
 fn scenes_are_chosen_by_wish_default_or_order() {
     let mut asset = three_scenes();
     assert_eq!(choose(&asset, None).unwrap().roots, [2]);
-    assert_eq!(choose(&asset, Some(SceneChoice::Index(1))).unwrap().roots, [1]);
-    let second = choose(&asset, Some(SceneChoice::Name("second".into()))).unwrap();
+    assert_eq!(choose(&asset, Some(Choice::Index(1))).unwrap().roots, [1]);
+    let second = choose(&asset, Some(Choice::Name("second".into()))).unwrap();
     assert_eq!((second.roots, second.name.as_deref()), (vec![1], Some("second")));
-    assert!(choose(&asset, Some(SceneChoice::Index(2))).unwrap().roots.is_empty());
+    assert!(choose(&asset, Some(Choice::Index(2))).unwrap().roots.is_empty());
     asset.json["scene"] = json!(1);
     assert_eq!(choose(&asset, None).unwrap().roots, [1]);
     let imported = asset.loaded();
@@ -115,7 +115,7 @@ fn scenes_are_chosen_by_wish_default_or_order() {
 
 #[test]
 fn scenes_that_are_not_there_are_refused_with_those_that_are() {
-    for choice in [SceneChoice::Index(3), SceneChoice::Name("third".into())] {
+    for choice in [Choice::Index(3), Choice::Name("third".into())] {
         let error = choose(&three_scenes(), Some(choice)).unwrap_err();
         assert!(error.starts_with("model: /scenes: has no scene "), "{error}");
         assert!(error.ends_with("; choose one of: 0, \"second\", 2"), "{error}");

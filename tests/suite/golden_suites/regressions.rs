@@ -126,6 +126,32 @@ fn what_comes_after_the_light_is_told_by_what_is_the_same() {
 }
 
 #[test]
+fn furnaces_and_references_say_which_light_is_not_as_it_should_be() {
+    let fixture = Fixture::new();
+    fixture.model(&Model { base_color: [0.9, 1.0, 1.0, 1.0], textured: false, light_cd: None, ..Model::default() });
+    let furnace = format!("{CASE}kind = \"furnace\"\nwithin = \"0.5%\"\n");
+    let small = CASE.replace("96x96", "48x48").replace("sphere", "truth");
+    let reference = format!(
+        "{small}kind = \"reference\"\nsamples = 16\nquality = \"draft\"\noverride = [\"ball.metallic=1\", \"ball.perceptual_roughness=0.3\"]\n\
+         thresholds = [\"pixels <= 0\"]\n"
+    );
+    fixture.suite(&format!("{furnace}{reference}"));
+    let ran = fixture.run("test", &[]).expect(1);
+    let [text] = moved(&ran, "material")[..] else { panic!("{}", ran.stdout) };
+    assert!(text.starts_with("material \"ball\" returns (0.9") && text.contains("(diffuse (0."), "{text}");
+    assert!(text.ends_with(": its base-color of (0.900, 1.000, 1.000) is not white"), "{text}");
+    assert!(ran.stdout.contains(&format!("moved      {text}\n")), "{}", ran.stdout);
+    let found = &ran.case("truth")["moved"];
+    assert_eq!(
+        (&found[0]["moved"], &found[0]["quantities"][0]),
+        (&"shading".into(), &"ibl-specular".into()),
+        "{found}"
+    );
+    let text = found[0]["text"].as_str().unwrap();
+    assert!(text.starts_with("material \"ball\": ibl-specular ") && text.contains(" the truth's "), "{text}");
+}
+
+#[test]
 fn accepting_keeps_what_the_golden_is_made_of() {
     let fixture = Fixture::new();
     fixture.run("test", &[]).expect(1);

@@ -93,7 +93,8 @@ fn the_samples_in_parts_are_those_of_one_process() {
     let report = whole(first.path(), cache.path());
     println!("{} cases, {} with goldens", report["cases"].as_array().unwrap().len(), bitwise_the_goldens(&report));
     assert!(bitwise_the_goldens(&report) >= 28 && report["cases"].as_array().unwrap().len() >= 30, "{report}");
-    assert_eq!(whole(first.path(), cache.path()), report);
+    // A difference would be a page of text.
+    assert!(whole(first.path(), cache.path()) == report, "another report of the same run");
     let before = format!("export SPECULA_CACHE_DIR='{}'", cache.path().display());
     for (name, scheduler) in [("GNU parallel", Scheduler::parallel()), ("Slurm", Scheduler::slurm())] {
         let Some(scheduler) = scheduler else { continue };
@@ -102,7 +103,7 @@ fn the_samples_in_parts_are_those_of_one_process() {
             let output = scheduler.run(first.path(), &before, parts);
             assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
             println!("{name}, {parts} parts: {:.1} s", start.elapsed().as_secs_f64());
-            assert_eq!(timeless(&first.path().join("report")), report, "{name}, {parts} parts");
+            assert!(timeless(&first.path().join("report")) == report, "{name}, {parts} parts: another report");
             for name in ["report", "parts"] {
                 std::fs::remove_dir_all(first.path().join(name)).unwrap();
             }

@@ -1,9 +1,9 @@
 //! What has moved between two pictures, from their ingredients.
 
-use super::gather::{FROM_LIGHTS, FROM_SURROUNDINGS, SURROUNDINGS};
+use super::gather::{FAULTS, FROM_LIGHTS, FROM_SURROUNDINGS, SURROUNDINGS};
 use super::moves::{Class, Move, class, is_in_motion, moves};
-use super::words::{material, said, shift};
-use super::{Finding, Ingredients, MaterialIngredients, Moved, TextureHash};
+use super::words::{material, said, shares_at_fault, shift};
+use super::{Finding, Ingredients, MaterialIngredients, Moved, Quantity, TextureHash};
 
 /// More findings than these are counted.
 const MOST: usize = 12;
@@ -20,10 +20,10 @@ pub(in crate::cli::test) fn findings(then: &Ingredients, now: &Ingredients) -> V
     if then.size_px != now.size_px {
         return vec![Finding::unknown("pictures of other sizes are not compared by what they are made of")];
     }
-    let Some((both, mut found)) = paired(then, now) else {
-        return vec![Finding::unknown("what is kept of the golden cannot be read; accept it again")];
-    };
-    let mut all: Vec<Finding> = both.iter().filter_map(fault).collect();
+    let (both, mut found) = paired(then, now);
+    let is_new = |both: &&Both<'_>| !both.of(Class::Fault).is_empty();
+    let mut all: Vec<Finding> =
+        both.iter().filter(is_new).filter_map(|both| fault(both.now, both.now.quantity(FAULTS)?)).collect();
     found.extend(geometry(&both, now.scale, found.is_empty()));
     all.append(&mut found);
     let others = other_lights(then, now);
@@ -42,6 +42,11 @@ pub(in crate::cli::test) fn findings(then: &Ingredients, now: &Ingredients) -> V
                     .into(),
         });
     }
+    at_most(all)
+}
+
+/// The first of them, and how many more there are.
+pub(super) fn at_most(mut all: Vec<Finding>) -> Vec<Finding> {
     if all.len() > MOST {
         let more = all.len() - MOST + 1;
         all.truncate(MOST - 1);
@@ -51,7 +56,7 @@ pub(in crate::cli::test) fn findings(then: &Ingredients, now: &Ingredients) -> V
 }
 
 /// Materials that are seen in both, most of the picture first, and findings of those that are seen in one.
-fn paired<'a>(then: &'a Ingredients, now: &'a Ingredients) -> Option<(Vec<Both<'a>>, Vec<Finding>)> {
+fn paired<'a>(then: &'a Ingredients, now: &'a Ingredients) -> (Vec<Both<'a>>, Vec<Finding>) {
     let mut left: Vec<&MaterialIngredients> = then.materials.iter().collect();
     let (mut both, mut found) = (Vec::new(), Vec::new());
     let in_dark = then.lights.is_empty() || now.lights.is_empty();
@@ -60,14 +65,18 @@ fn paired<'a>(then: &'a Ingredients, now: &'a Ingredients) -> Option<(Vec<Both<'
         match left.iter().position(|then| then.name == now.name) {
             Some(place) => {
                 let then = left.remove(place);
-                both.push(Both { then, now, moves: moves(then, now, in_dark)? });
+                both.push(Both { then, now, moves: moves(then, now, in_dark) });
             }
+            // It may be among those of which nothing was kept.
+            None if then.left_out > 0 => {}
             None => found.push(seen(now, "is seen, and was not")),
         }
     }
-    found.extend(left.iter().map(|gone| seen(gone, "was seen, and is not")));
+    if now.left_out == 0 {
+        found.extend(left.iter().map(|gone| seen(gone, "was seen, and is not")));
+    }
     both.sort_by_key(|both| std::cmp::Reverse(both.now.pixels));
-    Some((both, found))
+    (both, found)
 }
 
 fn seen(of: &MaterialIngredients, what: &str) -> Finding {
@@ -117,10 +126,15 @@ fn list(moves: &[&Move]) -> String {
     moves.iter().map(|found| said(found)).collect::<Vec<_>>().join(", ")
 }
 
-fn fault(both: &Both<'_>) -> Option<Finding> {
-    let faults = both.of(Class::Fault);
-    let text = || format!("{}: {}", material(&both.now.name), list(&faults));
-    (!faults.is_empty()).then(|| finding(Moved::Fault, both.now, &faults, text()))
+/// Radiance that is at fault, by the shares of a material's pixels; none where there is no fault.
+pub(super) fn fault(of: &MaterialIngredients, shares: &Quantity) -> Option<Finding> {
+    let name = material(&of.name);
+    (shares.mean != [0.0; 3]).then(|| Finding {
+        moved: Moved::Fault,
+        material: Some(of.name.clone()),
+        quantities: vec![FAULTS.into()],
+        text: format!("{name}: {}", shares_at_fault(&shares.mean)),
+    })
 }
 
 /// What is elsewhere in the picture; one finding where all of it has gone the same way.
@@ -239,11 +253,10 @@ fn lights(others: &[OtherLight<'_>], both: &[Both<'_>]) -> Vec<Finding> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Quantity;
     use super::*;
 
     fn quantity(name: &str, value: f64) -> Quantity {
-        Quantity { name: name.into(), mean: [value; 3], spread: [0.0; 3], sketch: String::new() }
+        Quantity { name: name.into(), mean: [value; 3], spread: [0.0; 3], sketch: None }
     }
 
     fn material(name: &str, quantities: &[(&str, f64)]) -> MaterialIngredients {
@@ -273,6 +286,7 @@ mod tests {
             scale: 2.0,
             lights: vec!["environment neutral".into(), "point light A".into(), "point light B".into()],
             materials: vec![material("paint", &PAINT), material("paint", &PAINT), material("glass", &PAINT)],
+            left_out: 0,
         }
     }
 
@@ -355,9 +369,12 @@ mod tests {
     #[test]
     fn what_is_not_ours_is_not_compared() {
         assert_eq!(said(|now| now.size_px = [32, 32])[0].0, Moved::Unknown);
-        let mut then = picture();
-        then.materials[0].quantities[0].sketch = "no digits".into();
-        assert_eq!(findings(&then, &then)[0].moved, Moved::Unknown);
+        // Materials that are gone may be among those of which nothing is kept.
+        let found = said(|now| {
+            now.left_out = 1;
+            now.materials.remove(2);
+        });
+        assert_eq!(found[0].0, Moved::Display);
         let many = said(|now| {
             let some = |index| MaterialIngredients { name: format!("m{index}"), ..material("", &PAINT) };
             now.materials.extend((0..30).map(some));

@@ -1,13 +1,13 @@
 //! Ingredients from the debug views of a case.
 
+use super::furnace::RETURNED;
+use super::seen::Seen;
 use super::sketch::{Sketch, content_hash};
 use super::{Ingredients, MaterialIngredients, Quantity, TextureHash};
-use crate::reference::inspect::Inspector;
 use crate::scene::{
     Channel, Component, Components, Input, LightInWorld, LightKind, LightSource, Pixels, RadianceImage, Scene, View,
 };
 use glam::{UVec2, Vec3};
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Longest side of the views that are measured: enough for means, at a fraction of the picture's cost.
@@ -28,17 +28,22 @@ pub(super) const FROM_LIGHTS: &str = "direct";
 
 /// The size of the views for a picture of a size, pixels.
 pub(in crate::cli::test) fn size(picture_px: UVec2) -> UVec2 {
+    no_larger(picture_px, SIDE_MAX)
+}
+
+/// The size, or a smaller one of the same shape, whose longest side is `side_max` at most.
+pub(super) fn no_larger(picture_px: UVec2, side_max: u32) -> UVec2 {
     let longest = picture_px.max_element();
-    if longest <= SIDE_MAX {
+    if longest <= side_max {
         return picture_px;
     }
-    let shrunk = picture_px.as_dvec2() * f64::from(SIDE_MAX) / f64::from(longest);
+    let shrunk = picture_px.as_dvec2() * f64::from(side_max) / f64::from(longest);
     shrunk.round().as_uvec2().max(UVec2::ONE)
 }
 
 /// What is measured of a scene, by name: the inputs of shading, the light by where it comes from and which lobe has sent
-/// it on, and the faults. Light that the scene cannot have is left out.
-pub(in crate::cli::test) fn channels(scene: &Scene) -> Vec<(String, Channel)> {
+/// it on, and the faults; of a furnace, what surfaces return. Light that the scene cannot have is left out.
+pub(in crate::cli::test) fn channels(scene: &Scene, is_furnace: bool) -> Vec<(String, Channel)> {
     let mut channels: Vec<_> =
         Input::ALL.into_iter().map(|input| (input.name().to_owned(), Channel::Input(input))).collect();
     let has_lights = !scene.lights_in_world().is_empty();
@@ -56,6 +61,9 @@ pub(in crate::cli::test) fn channels(scene: &Scene) -> Vec<(String, Channel)> {
         }
     }
     channels.push((FAULTS.into(), Channel::Nan));
+    if is_furnace {
+        channels.push((RETURNED.into(), Channel::Furnace));
+    }
     channels
 }
 
@@ -70,21 +78,21 @@ impl Gathering {
     /// Finds out which material each pixel of the view shows. `scale` is the width of the picture over that of the view;
     /// `surroundings` says what the environment is.
     pub(in crate::cli::test) fn new(scene: &Scene, view: &View, scale: f64, surroundings: &str) -> Self {
-        let (seen, order) = materials_seen(scene, view);
+        let seen = Seen::of(scene, view);
+        let Seen { nearest, measured, materials } = &seen;
         let width = view.size_px.x as usize;
-        let measured = without_edges(&seen, width, order.len());
         let mut hashes = BTreeMap::new();
-        let materials = order.iter().enumerate().map(|(place, &index)| {
-            let pixels: Vec<usize> = (0..seen.len()).filter(|&pixel| seen[pixel] == Some(place)).collect();
+        let materials = materials.iter().enumerate().map(|(place, &index)| {
+            let pixels: Vec<usize> = (0..nearest.len()).filter(|&pixel| nearest[pixel] == Some(place)).collect();
             let count = pixels.len().max(1) as f64;
             let middle = |of: fn(usize, usize) -> usize| {
                 pixels.iter().map(|&pixel| of(pixel, width) as f64 + 0.5).sum::<f64>() / count
             };
             MaterialIngredients {
-                name: scene.materials[index].name.clone().unwrap_or_else(|| format!("material {index}")),
+                name: seen.name(scene, place),
                 pixels: pixels.len() as u32,
-                measured: measured.iter().filter(|&&seen| seen == Some(place)).count() as u32,
-                center_px: [middle(|pixel, width| pixel % width), middle(|pixel, width| pixel / width)],
+                measured: measured.iter().filter(|&&other| other == Some(place)).count() as u32,
+                center_px: [middle(|pixel, width| pixel % width), middle(|pixel, width| pixel / width)].map(six_digits),
                 textures: textures(scene, index, &mut hashes),
                 quantities: Vec::new(),
             }
@@ -96,7 +104,8 @@ impl Gathering {
             format!("{SURROUNDINGS} {surroundings} of intensity {intensity}, turned by {degrees} degrees")
         });
         let lights = scene.lights_in_world().iter().map(light).chain(environment).collect();
-        Self { ingredients: Ingredients { size_px: view.size_px.to_array(), scale, lights, materials }, measured }
+        let ingredients = Ingredients { size_px: view.size_px.to_array(), scale, lights, materials, left_out: 0 };
+        Self { ingredients, measured: seen.measured }
     }
 
     /// Measures a channel, whose image is in the units that it is reported in.
@@ -119,7 +128,7 @@ impl Gathering {
         }
         for (material, sketch) in self.ingredients.materials.iter_mut().zip(sketches) {
             let [mean, spread] = [sketch.mean(), sketch.spread()].map(|moment| moment.map(six_digits));
-            let quantity = Quantity { name: name.to_owned(), mean, spread, sketch: sketch.digits() };
+            let quantity = Quantity { name: name.to_owned(), mean, spread, sketch: sketch.sums() };
             // What is not listed is zero.
             if !quantity.is_nothing() {
                 material.quantities.push(quantity);
@@ -128,41 +137,8 @@ impl Gathering {
     }
 
     pub(in crate::cli::test) fn finish(self) -> Ingredients {
-        self.ingredients
+        self.ingredients.bounded()
     }
-}
-
-/// For each pixel the nearest surface's material by its place in the list of those that are seen, and that list.
-fn materials_seen(scene: &Scene, view: &View) -> (Vec<Option<usize>>, Vec<usize>) {
-    let inspector = Inspector::new(scene, view);
-    let of_pixel = |pixel: u32| {
-        let place = UVec2::new(pixel % view.size_px.x, pixel / view.size_px.x);
-        inspector.layers(place).1.first().map(|layer| inspector.material(&layer.hit))
-    };
-    let materials: Vec<Option<usize>> = (0..view.size_px.element_product()).into_par_iter().map(of_pixel).collect();
-    let mut order: Vec<usize> = materials.iter().flatten().copied().collect();
-    order.sort_unstable();
-    order.dedup();
-    let place = |material: usize| order.binary_search(&material).ok();
-    (materials.into_iter().map(|material| material.and_then(place)).collect(), order)
-}
-
-/// Takes out the pixels that have a neighbour of another material, or none: their samples may show either. A material of
-/// which nothing would be left keeps all.
-fn without_edges(seen: &[Option<usize>], width: usize, materials: usize) -> Vec<Option<usize>> {
-    let height = seen.len() / width.max(1);
-    let is_inside = |pixel: usize| {
-        let (x, y) = (pixel % width, pixel / width);
-        let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
-        near(y, height).all(|row| near(x, width).all(|column| seen[row * width + column] == seen[pixel]))
-    };
-    let inside: Vec<Option<usize>> =
-        seen.iter().enumerate().map(|(pixel, seen)| seen.filter(|_| is_inside(pixel))).collect();
-    let mut has_inside = vec![false; materials];
-    inside.iter().flatten().for_each(|&material| has_inside[material] = true);
-    let keep =
-        |(seen, inside): (&Option<usize>, Option<usize>)| inside.or(seen.filter(|&material| !has_inside[material]));
-    seen.iter().zip(inside).map(keep).collect()
 }
 
 /// The number with so many digits as matter.
@@ -224,15 +200,5 @@ mod tests {
         assert_eq!(size(UVec2::new(96, 64)), UVec2::new(96, 64));
         assert_eq!(size(UVec2::new(1024, 512)), UVec2::new(256, 128));
         assert_eq!(size(UVec2::new(16384, 1)), UVec2::new(256, 1));
-    }
-
-    #[test]
-    fn edges_are_measured_where_there_is_nothing_else() {
-        let picture = ["........", ".000011.", ".000011.", ".000...."];
-        let material = |c: char| c.to_digit(10).map(|digit| digit as usize);
-        let seen: Vec<_> = picture.concat().chars().map(material).collect();
-        let kept = without_edges(&seen, 8, 2);
-        let pixels = |wanted| (0..seen.len()).filter(|&pixel| kept[pixel] == Some(wanted)).collect::<Vec<_>>();
-        assert_eq!((pixels(0), pixels(1)), (vec![18, 26], vec![13, 14, 21, 22]));
     }
 }

@@ -80,22 +80,20 @@ pub(super) fn is_in_motion(then: &MaterialIngredients, now: &MaterialIngredients
     then.pixels != now.pixels || !same_middle
 }
 
-/// All quantities of a material that have moved, but those that follow from others; `None` where what is kept of them is
-/// none of ours. `in_dark` says that one of the pictures has no light, for which nothing of a material is read.
-pub(super) fn moves(then: &MaterialIngredients, now: &MaterialIngredients, in_dark: bool) -> Option<Vec<Move>> {
+/// All quantities of a material that have moved, but those that follow from others. `in_dark` says that one of the pictures has no light, for which nothing of a material is read.
+pub(super) fn moves(then: &MaterialIngredients, now: &MaterialIngredients, in_dark: bool) -> Vec<Move> {
     let in_motion = is_in_motion(then, now);
-    let find = |of: &'_ MaterialIngredients, name: &str| of.quantities.iter().position(|other| other.name == name);
-    let nothing = |name: &str| Quantity { name: name.into(), mean: [0.0; 3], spread: [0.0; 3], sketch: String::new() };
-    let gone = then.quantities.iter().filter(|quantity| find(now, &quantity.name).is_none());
+    let nothing = |name: &str| Quantity { name: name.into(), mean: [0.0; 3], spread: [0.0; 3], sketch: None };
+    let gone = then.quantities.iter().filter(|quantity| now.quantity(&quantity.name).is_none());
     let names = now.quantities.iter().chain(gone).map(|quantity| quantity.name.as_str());
     let brightest = [then, now].into_iter().flat_map(|of| &of.quantities).filter(|q| class(&q.name) == Class::Light);
     let brightest = brightest.map(magnitude).fold(0.0, f64::max);
     let mut found: Vec<Move> = Vec::new();
     for name in names {
-        let of = |of: &MaterialIngredients| find(of, name).map_or_else(|| nothing(name), |i| of.quantities[i].clone());
+        let of = |of: &MaterialIngredients| of.quantity(name).cloned().unwrap_or_else(|| nothing(name));
         let (was, is) = (of(then), of(now));
         let own = magnitude(&was).max(magnitude(&is));
-        let far = distance(&was, &is, now.measured)?;
+        let far = distance(&was, &is, now.measured);
         let rms = (!in_motion).then_some(far);
         // A lobe that is a thousandth of the light is no news.
         let against = if class(name) == Class::Light { brightest } else { own };
@@ -119,7 +117,7 @@ pub(super) fn moves(then: &MaterialIngredients, now: &MaterialIngredients, in_da
     let moved: Vec<String> = found.iter().map(|found| found.name.clone()).collect();
     let follows = |found: &Move| causes(&found.name).iter().any(|cause| moved.iter().any(|name| name == cause));
     found.retain(|found| !follows(found));
-    Some(found)
+    found
 }
 
 fn is_read_in_dark(name: &str) -> bool {

@@ -6,7 +6,7 @@ use super::moves::{Class, Move, class};
 pub(super) fn said(found: &Move) -> String {
     let Move { name, was, is, rms, scale } = found;
     match (class(name), rms) {
-        (Class::Fault, _) => fault(is),
+        (Class::Fault, _) => shares_at_fault(is),
         (Class::Light, _) => light(found),
         // Unit vectors: the chord says the angle.
         (_, Some(rms)) if is_direction(name) => {
@@ -33,7 +33,7 @@ fn unit(name: &str) -> &'static str {
 }
 
 /// Shares of the pixels whose radiance is at fault.
-fn fault(share: &[f64; 3]) -> String {
+pub(super) fn shares_at_fault(share: &[f64; 3]) -> String {
     let kinds = ["NaN", "infinite", "negative"].into_iter().zip(share).filter(|(_, share)| **share > 0.0);
     let shares: Vec<String> = kinds.map(|(kind, share)| format!("{kind} in {}", percent(*share))).collect();
     format!("radiance is {} of its pixels", shares.join(" and "))
@@ -53,18 +53,19 @@ fn light(found: &Move) -> String {
     }
 }
 
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent >= 9.95 || percent == 0.0 { format!("{percent:.0} %") } else { format!("{percent:.2} %") }
 }
 
-fn vector(value: &[f64; 3]) -> String {
-    let [x, y, z] = value;
-    if x == y && y == z { plain(*x) } else { format!("({}, {}, {})", plain(*x), plain(*y), plain(*z)) }
+/// Three numbers, or one where no digit tells them apart.
+pub(super) fn vector(value: &[f64; 3]) -> String {
+    let [x, y, z] = value.map(plain);
+    if x == y && y == z { x } else { format!("({x}, {y}, {z})") }
 }
 
 /// Three digits.
-fn plain(value: f64) -> String {
+pub(super) fn plain(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         size if size >= 100.0 => format!("{value:.0}"),

@@ -7,7 +7,7 @@ mod pictures;
 #[cfg(test)]
 mod tests;
 
-use super::report::{AdapterReport, CaseReport, MetricReport, Provenance, Status, SuiteReport};
+use super::report::{AdapterReport, CaseReport, Kind, MetricReport, Provenance, Status, SuiteReport};
 use super::text::changed;
 use super::verdicts::visible;
 use crate::cli::compare::number;
@@ -188,7 +188,7 @@ fn stage(case: &CaseReport, shown: &Shown) -> Markup {
 
 fn moved(case: &CaseReport) -> Markup {
     html! {
-        h2 { "What has moved since the golden" }
+        h2 { @if case.kind == Kind::Golden { "What has moved since the golden" } @else { "What is not as it should be" } }
         ul.moved { @for finding in &case.moved { li { (name(&finding.text)) } } }
     }
 }

@@ -154,10 +154,13 @@ impl Own {
         if self.kind == Kind::Furnace {
             arguments.extend(["--env=white", "--background=transparent"].map(str::to_owned));
         }
+        let line_of = |name: &str| flags.iter().find(|flag| flag.name == name).map_or(line, |flag| flag.line);
         let mut args = shot::parse(&folder.join(&model), &arguments).map_err(|(name, problem)| {
-            let flag = flags.iter().find(|flag| Some(&flag.name) == name.as_ref());
-            source.error(flag.map_or(line, |flag| flag.line), format!("case {id}: {problem}"))
+            source.error(name.map_or(line, |name| line_of(&name)), format!("case {id}: {problem}"))
         })?;
+        args.subject
+            .check_lights()
+            .map_err(|problem| source.error(line_of("light"), format!("case {id}: {problem}")))?;
         if model == "-" {
             return Err(source.error(line, format!("case {id}: a model of a suite is a file, not stdin")));
         }
@@ -201,13 +204,24 @@ fn is_foreign(name: &str, kind: Kind) -> bool {
 fn own_flags(table: &Table<'_>, kind: Kind) -> Result<Vec<Flag>, CliError> {
     let known = shot::names();
     let flag = |value: &Value<'_>| {
-        check_flag(value, &known, kind, || {
-            let keys: Vec<&str> = KEYS.into_iter().chain(known.iter().map(String::as_str)).collect();
-            table.unknown(value, &keys)
-        })?;
+        check_flag(value, &known, kind, || unknown(table, value, &KEYS, &known))?;
         Flag::of(value)
     };
     table.rest().map(flag).collect()
+}
+
+/// What to say of a key that is neither a flag nor one of `keys`.
+pub(super) fn unknown(table: &Table<'_>, value: &Value<'_>, keys: &[&str], flags: &[String]) -> CliError {
+    match value.key.as_str() {
+        "times" => value.error("animations are not played, so that there is one time alone: leave out `times`"),
+        "variants" => value.error("write several variants as matrix = { variant = [\"A\", \"B\"] }"),
+        "views" => value
+            .error("write several views as matrix = { camera = [0, 1] } or matrix = { orbit = [[30, 75], [60, 75]] }"),
+        _ => {
+            let keys: Vec<&str> = keys.iter().copied().chain(flags.iter().map(String::as_str)).collect();
+            table.unknown(value, &keys)
+        }
+    }
 }
 
 fn check_flag(

@@ -164,6 +164,11 @@ impl Suite {
         self.goldens.join(set).join(format!("{id}.png"))
     }
 
+    /// The folder of all sets of goldens.
+    pub(super) fn goldens_folder(&self) -> &Path {
+        &self.goldens
+    }
+
     /// Removes what killed runs have left among the goldens.
     pub(super) fn clear_stale_goldens(&self) {
         output::clear_stale_below(&self.goldens);
@@ -212,8 +217,7 @@ impl Defaults {
             if known.contains(&value.key) {
                 return Flag::of(value);
             }
-            let keys: Vec<&str> = ["thresholds", "mask"].into_iter().chain(known.iter().map(String::as_str)).collect();
-            Err(table.unknown(value, &keys))
+            Err(case::unknown(table, value, &["thresholds", "mask"], &known))
         };
         let flags = table.rest().map(flag).collect::<Result<_, _>>()?;
         Ok(Self { flags, limits, mask, cache: CacheArgs::default() })

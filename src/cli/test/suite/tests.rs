@@ -102,6 +102,16 @@ fn little_is_needed() {
 }
 
 #[test]
+fn views_and_variants_are_axes_of_a_matrix() {
+    let text = format!("{ONE}matrix = {{ orbit = [[30, 75], [60, 75]], variant = ['red', '1'] }}\n");
+    let suite = parse(&text).unwrap();
+    let names = ["30,75,variant=red", "30,75,variant=1", "60,75,variant=red", "60,75,variant=1"];
+    let ids: Vec<&str> = suite.cases.iter().map(|case| case.id.as_str()).collect();
+    assert_eq!(ids, names.map(|name| format!("a/orbit={name}")));
+    assert_eq!(suite.cases[1].settings, ["--orbit=30,75", "--variant=1"]);
+}
+
+#[test]
 fn models_vary_too() {
     let text = "[[case]]\nname = 'm'\nthresholds = ['pixels <= 0']\nmatrix = { model = ['x/a.glb', 'b.gltf'] }\n";
     assert_eq!(ids(text), ["m/model=a", "m/model=b"]);
@@ -113,6 +123,11 @@ fn mistakes_are_named_with_their_line() {
     for (text, expected) in [
         (one("colour = 1"), "dir/s.toml:5: `colour` is no key of [[case]]; there are name, model"),
         (one("output = 'x'"), "dir/s.toml:5: `output` is no key"),
+        (one("times = [0, 1]"), "dir/s.toml:5: animations are not played"),
+        (one("variants = ['x']"), "dir/s.toml:5: write several variants as matrix"),
+        (one("views = [0, 1]"), "dir/s.toml:5: write several views as matrix"),
+        ("[defaults]\ntimes = [0]\n".into(), "dir/s.toml:2: animations are not played"),
+        (one("light = ['spot:flux=1lm,at=0,0,1']"), "dir/s.toml:5: case a: --light spot:flux=1lm,at=0,0,1: dir="),
         (one("size = '64'"), "dir/s.toml:5: case a: invalid value '64'"),
         (one("orbit = [1, 2]\neye = [0, 0, 1]"), "case a: the argument '--"),
         (one("samples = 4"), "dir/s.toml:5: `samples` is of the reference renderer"),
