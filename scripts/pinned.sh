@@ -10,6 +10,7 @@ shift 2
 recipe=$(sed -n '/^<!-- pinned -->$/,/^```$/p' "$here/docs/ci.md")
 release=$(printf '%s\n' "$recipe" | sed -n 's/^FROM debian:\([a-z]*\)-slim$/\1/p')
 root=$(mktemp -d)
+chmod 755 "$root"
 trap 'rm -rf "$root"' EXIT
 debootstrap --variant=minbase "$release" "$root" >"$root.log" || { cat "$root.log" >&2; exit 1; }
 rm -f "$root.log"
