@@ -152,7 +152,7 @@ impl Renderer {
             |index: usize| geometry.holds(index).then(|| scene.draws[index].primitive.indices.len() as u64 / 3);
         let is_deferred = match self.path {
             PathChoice::Forward => false,
-            PathChoice::Faster => are_small(&scene.drawables, view, target.samples, triangles),
+            PathChoice::Faster => are_small(&scene.drawables, scene.features, view, target.samples, triangles),
             PathChoice::Deferred => true,
         };
         match is_deferred {

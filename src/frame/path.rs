@@ -4,7 +4,7 @@ use super::cull::clip_from_origin;
 use super::drawables::{Drawable, Drawables};
 use super::rectangle::Rectangle;
 use crate::scene::{Topology, View};
-use crate::shader::Alpha;
+use crate::shader::{Alpha, SceneFeatures};
 
 /// The way from triangles to radiance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -40,6 +40,9 @@ const MAX_COPIED_VERTICES: usize = 1 << 20;
 /// with and without textures (docs/performance.md). With several samples blocks beside edges cost more.
 const SMALL_TRIANGLE_PX: f64 = 75.0;
 const SMALL_TRIANGLE_MULTISAMPLED_PX: f64 = 250.0;
+
+/// Lamps alone take about half as long as an environment, and so does what is won by shading less.
+const WITHOUT_ENVIRONMENT: f64 = 0.5;
 
 /// What a pixel costs that may be drawn over, of what it costs to be gone over by a deferred draw.
 const OVER: f64 = 0.4;
@@ -82,7 +85,13 @@ pub fn left_over(
 
 /// Whether triangles are small enough for the deferred path to pay, over all that can take it. `triangles` says how many a
 /// drawable has, if it is deferred.
-pub fn are_small(drawables: &Drawables, view: &View, samples: u32, triangles: impl Fn(usize) -> Option<u64>) -> bool {
+pub fn are_small(
+    drawables: &Drawables,
+    light: SceneFeatures,
+    view: &View,
+    samples: u32,
+    triangles: impl Fn(usize) -> Option<u64>,
+) -> bool {
     let clip = clip_from_origin(view, drawables.origin_in_world);
     let (mut pixels, mut count) = (0.0, 0);
     for (index, drawable) in drawables.draws.iter().enumerate() {
@@ -97,7 +106,8 @@ pub fn are_small(drawables: &Drawables, view: &View, samples: u32, triangles: im
     }
     let over = left_over(drawables, view, |index| triangles(index).is_some()).reduce(Rectangle::with);
     let limit = if samples > 1 { SMALL_TRIANGLE_MULTISAMPLED_PX } else { SMALL_TRIANGLE_PX };
-    pixels + OVER * over.map_or(0.0, Rectangle::area) < limit * count as f64
+    let worth = if light.environment { 1.0 } else { WITHOUT_ENVIRONMENT };
+    pixels + OVER * over.map_or(0.0, Rectangle::area) < worth * limit * count as f64
 }
 
 #[cfg(test)]
@@ -105,7 +115,6 @@ mod tests {
     use super::*;
     use crate::scene::framing::default_view;
     use crate::scene::{AlphaMode, Material, Mesh, Node, Scene, shapes};
-    use crate::shader::SceneFeatures;
     use glam::UVec2;
 
     /// So many spheres of some 8000 triangles at the same place, which are one draw, and one of another material.
@@ -139,21 +148,26 @@ mod tests {
 
     #[test]
     fn triangles_are_small_or_large_by_the_picture() {
-        let largest = |scene: &Scene, samples| {
-            let drawables = Drawables::new(scene, SceneFeatures::of(scene));
+        let largest_in = |scene: &Scene, environment, samples| {
+            let light = SceneFeatures { environment, ..SceneFeatures::of(scene) };
+            let drawables = Drawables::new(scene, light);
             let is_deferred = deferred(&drawables, |_| 8000);
             let triangles = |index: usize| is_deferred[index].then_some(8000);
-            let small =
-                |side: &u32| are_small(&drawables, &default_view(scene, UVec2::splat(*side)), samples, triangles);
+            let small = |side: &u32| {
+                are_small(&drawables, light, &default_view(scene, UVec2::splat(*side)), samples, triangles)
+            };
             let sides: Vec<u32> = (1..=64).map(|i| 64 * i).filter(small).collect();
             // What is small in a picture is small in a smaller one.
             assert_eq!(sides, (1..=sides.len() as u32).map(|i| 64 * i).collect::<Vec<_>>());
             sides.last().copied()
         };
+        let largest = |scene: &Scene, samples| largest_in(scene, true, samples);
         let (opaque, glazed) = (spheres(1, AlphaMode::Opaque), spheres(1, AlphaMode::Blend));
         let limits = [1, 4].map(|samples| [&opaque, &glazed].map(|scene| largest(scene, samples)));
         let [[one, one_glazed], [four, four_glazed]] = limits;
         assert!(one > Some(512) && one < Some(1300) && four > one && four < Some(4096), "{limits:?}");
         assert!(one_glazed < one && one_glazed > Some(512) && four_glazed < four, "{limits:?}");
+        let without = [1, 4].map(|samples| largest_in(&opaque, false, samples));
+        assert!(without[0] < one && without[1] < four && without[0] > Some(512), "{without:?}, {limits:?}");
     }
 }
