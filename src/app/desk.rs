@@ -1,7 +1,7 @@
 //! What lies before the user: a model, the light on it, and what is being fetched.
 
 use super::folder::{self, Kind};
-use super::loading::{LoadedLight, LoadedModel, Loading, Part, Wake, Wanted, WantedLight};
+use super::loading::{LoadedLight, LoadedModel, Loading, Part, Wake, Wanted, WantedLight, WantedModel};
 use super::panel::Inspected;
 use super::recent::Recent;
 use super::saving;
@@ -25,6 +25,7 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug, Clone, Default)]
 pub(super) struct About {
     pub(super) warnings: Vec<String>,
+    pub(super) variants: Vec<String>,
     pub(super) extensions_used: Vec<String>,
 }
 
@@ -124,7 +125,10 @@ impl Desk {
         self.forget(Kind::Model, path);
         let opened = if folder::is_state(path) { self.open_state(path) } else { folder::model_of(path) };
         match opened {
-            Ok(model) => self.fetch(Some(model)),
+            Ok(path) => {
+                let variant = self.coming.as_ref().and_then(|coming| coming.variant.clone());
+                self.fetch(Some(WantedModel { path, variant }));
+            }
             Err(problem) => self.say(problem),
         }
     }
@@ -137,12 +141,19 @@ impl Desk {
         Ok(model)
     }
 
-    fn fetch(&mut self, model: Option<PathBuf>) {
+    fn fetch(&mut self, model: Option<WantedModel>) {
         let light = self.wanted_light();
         let light = (!self.is_lit_by(&light)).then_some(light);
         let wanted = Wanted { model, light };
         let (max_side, wake) = (Arc::clone(&self.max_side), Arc::clone(&self.wake));
         self.loading = Some(Loading::start(wanted, max_side, self.cache.clone(), wake));
+    }
+
+    /// Begins to read the model that is open once more.
+    fn fetch_again(&mut self, variant: Option<String>) {
+        if let Some(path) = self.viewer.state.model.clone() {
+            self.fetch(Some(WantedModel { path, variant }));
+        }
     }
 
     fn wanted_light(&self) -> WantedLight {
@@ -182,10 +193,10 @@ impl Desk {
                 }
             }
             Effect::Reload => {
-                if let Some(model) = self.viewer.state.model.clone() {
-                    self.fetch(Some(model));
-                }
+                let variant = self.viewer.state.variant.clone();
+                self.fetch_again(variant);
             }
+            Effect::Variant(variant) => self.fetch_again(variant),
             Effect::Screenshot if self.is_provisional() => {
                 self.say("nothing is saved before textures and light are there".into());
             }
@@ -282,7 +293,7 @@ impl Desk {
         if has_light || !self.loading.as_ref().is_some_and(Loading::awaits_light) {
             match self.arrived.take() {
                 Some((model, false)) => return self.show(model, stage),
-                Some((model, true)) if !self.is_open(&model.path) => return self.show_sketch(model, stage),
+                Some((model, true)) if !self.is_open(&model.wanted.path) => return self.show_sketch(model, stage),
                 _ => {}
             }
         }
@@ -316,7 +327,7 @@ impl Desk {
     /// Puts a model before the user while its images are being decoded.
     fn show_sketch(&mut self, model: LoadedModel, stage: &mut Stage) {
         let state = self.viewer.state.clone();
-        let opened = self.place(model.scene, &model.path, (model.levels, stage));
+        let opened = self.place(model.scene, &model.wanted, (model.levels, stage));
         let before = Before { state, shown: self.viewer.shown.replace(opened.0) };
         self.before.get_or_insert(before);
         if let Err(error) = opened.1 {
@@ -342,17 +353,17 @@ impl Desk {
     }
 
     fn show(&mut self, model: LoadedModel, stage: &mut Stage) {
-        let LoadedModel { path, scene, warnings, extensions_used, levels } = model;
-        let (shown, opened) = self.place(scene, &path, (levels, stage));
+        let LoadedModel { wanted, scene, warnings, variant_names: variants, extensions_used, levels } = model;
+        let (shown, opened) = self.place(scene, &wanted, (levels, stage));
         self.before = None;
         self.viewer.interface.message = self.note.take();
         if self.watches
-            && let Err(problem) = ModelWatch::follow(&mut self.watch, &path, Arc::clone(&self.wake))
+            && let Err(problem) = ModelWatch::follow(&mut self.watch, &wanted.path, Arc::clone(&self.wake))
         {
             self.say(problem);
         }
-        self.remember(Kind::Model, &path);
-        self.about = About { warnings, extensions_used };
+        self.remember(Kind::Model, &wanted.path);
+        self.about = About { warnings, variants, extensions_used };
         self.viewer.shown = Some(shown);
         if let Err(error) = opened {
             self.fail(&error);
@@ -363,17 +374,18 @@ impl Desk {
     fn place(
         &mut self,
         scene: Scene,
-        path: &Path,
+        WantedModel { path, variant }: &WantedModel,
         (levels, stage): (TextureLevels, &mut Stage),
     ) -> (Shown, Result<(), CaptureError>) {
         let state = &mut self.viewer.state;
-        if let Some(coming) = self.coming.take_if(|coming| coming.model.as_deref() == Some(path)) {
+        if let Some(coming) = self.coming.take_if(|coming| coming.model.as_ref() == Some(path)) {
             *state = ViewerState { size_px: state.size_px, ..coming };
         }
         // Read again, or named by a state that was opened: what was changed stays.
-        if state.model.as_deref() != Some(path) {
+        if state.model.as_ref() != Some(path) {
             *state = state.for_model(path);
         }
+        state.variant.clone_from(variant);
         let mut shown = Shown::new(scene, state);
         if state.camera.pose.is_none() {
             state.camera.pose = Some(super::camera::Pose::Orbit(shown.around.home));

@@ -4,11 +4,11 @@ use super::shown::environment_image;
 use crate::bake::environment::{BakeOptions, bake, sketch};
 use crate::cache::EnvironmentCache;
 use crate::gpu_scene::TextureLevels;
-use crate::import::{ImportError, ImportOptions, Imported, model_from_path};
+use crate::import::{Choice, ImportError, ImportOptions, Imported, model_from_path};
 use crate::parallel::beside;
 use crate::progress::Progress;
 use crate::scene::{EnvironmentImage, EnvironmentMaps, Scene};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -17,9 +17,17 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Wanted {
     /// `None` keeps the model that is open.
-    pub(super) model: Option<PathBuf>,
+    pub(super) model: Option<WantedModel>,
     /// `None` keeps the light that is there.
     pub(super) light: Option<WantedLight>,
+}
+
+/// A model and which variant of its materials.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct WantedModel {
+    pub(super) path: PathBuf,
+    /// `None` takes the materials that are named without any.
+    pub(super) variant: Option<String>,
 }
 
 /// A panorama and how it is baked.
@@ -32,9 +40,11 @@ pub(super) struct WantedLight {
 
 /// A model as its file has it.
 pub(super) struct LoadedModel {
-    pub(super) path: PathBuf,
+    pub(super) wanted: WantedModel,
     pub(super) scene: Scene,
     pub(super) warnings: Vec<String>,
+    /// Variants of its materials.
+    pub(super) variant_names: Vec<String>,
     pub(super) extensions_used: Vec<String>,
     pub(super) levels: TextureLevels,
 }
@@ -175,7 +185,7 @@ impl Loading {
     }
 
     /// The model that has not come yet.
-    pub(super) fn missing_model(&self) -> Option<&PathBuf> {
+    pub(super) fn missing_model(&self) -> Option<&WantedModel> {
         self.missing.model.as_ref()
     }
 
@@ -199,8 +209,8 @@ fn load(
     let line = |error: ImportError| error.to_string();
     beside(
         || {
-            if let Some(path) = &wanted.model {
-                give(Part::Model(load_model(path, max_side, progress, give).map_err(line)));
+            if let Some(model) = &wanted.model {
+                give(Part::Model(load_model(model, max_side, progress, give).map_err(line)));
             }
         },
         || {
@@ -212,19 +222,23 @@ fn load(
 }
 
 fn load_model(
-    path: &Path,
+    wanted: &WantedModel,
     max_side: &OnceLock<u32>,
     progress: &dyn Progress,
     give: &(dyn Fn(Part) + Sync),
 ) -> Result<LoadedModel, ImportError> {
-    let model = |scene: Scene, warnings, extensions_used| {
-        let levels = TextureLevels::of(&scene, *max_side.wait());
-        LoadedModel { path: path.to_owned(), scene, warnings, extensions_used, levels }
+    let levels = |scene: &Scene| TextureLevels::of(scene, *max_side.wait());
+    let sketch = |scene: Scene| {
+        let (levels, wanted) = (levels(&scene), wanted.clone());
+        let (warnings, variant_names, extensions_used) = Default::default();
+        give(Part::Sketch(LoadedModel { wanted, scene, warnings, variant_names, extensions_used, levels }));
     };
-    let sketch = |scene: Scene| give(Part::Sketch(model(scene, Vec::new(), Vec::new())));
-    let options = ImportOptions { progress, sketch: Some(&sketch), ..Default::default() };
-    let Imported { scene, warnings, extensions_used, .. } = model_from_path(path, &options)?;
-    Ok(model(scene, warnings.iter().map(ToString::to_string).collect(), extensions_used))
+    let variant = wanted.variant.clone().map(Choice::Name);
+    let options = ImportOptions { variant, progress, sketch: Some(&sketch), ..Default::default() };
+    let Imported { scene, warnings, variant_names, extensions_used, .. } = model_from_path(&wanted.path, &options)?;
+    let warnings = warnings.iter().map(ToString::to_string).collect();
+    let (levels, wanted) = (levels(&scene), wanted.clone());
+    Ok(LoadedModel { wanted, scene, warnings, variant_names, extensions_used, levels })
 }
 
 fn load_light(
@@ -257,6 +271,7 @@ fn load_light(
 mod tests {
     use super::*;
     use crate::progress::Silent;
+    use std::path::Path;
 
     /// Names of the parts that a job gives, in their order.
     fn parts(work: impl FnOnce(&(dyn Fn(Part) + Sync))) -> Vec<(&'static str, Part)> {
@@ -275,7 +290,9 @@ mod tests {
 
     #[test]
     fn a_sketch_comes_before_images_are_decoded() {
-        let showcase = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/showcase.glb");
+        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+        let [showcase, spheres] =
+            ["showcase.glb", "spheres.glb"].map(|name| WantedModel { path: assets.join(name), variant: None });
         let max_side = OnceLock::from(4096);
         let given = parts(|give| {
             let model = load_model(&showcase, &max_side, &Silent, give).unwrap();
@@ -290,7 +307,6 @@ mod tests {
         let corners = |model: &LoadedModel| model.scene.meshes.iter().flat_map(|mesh| &mesh.primitives).count();
         assert_eq!(corners(sketch), corners(model));
         // Models without images have none.
-        let spheres = showcase.with_file_name("spheres.glb");
         assert!(parts(|give| drop(load_model(&spheres, &max_side, &Silent, give).unwrap())).is_empty());
     }
 

@@ -32,6 +32,9 @@ pub struct ViewerState {
     pub schema: String,
     /// The file of the model; none is open without.
     pub model: Option<PathBuf>,
+    /// Of its materials (KHR_materials_variants).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub variant: Option<String>,
     pub size_px: [u32; 2],
     pub camera: CameraState,
     pub look: Look,
@@ -111,6 +114,7 @@ impl Default for ViewerState {
         Self {
             schema: SCHEMA.into(),
             model: None,
+            variant: None,
             size_px: [1280, 800],
             camera: CameraState::default(),
             look: Look::default(),

@@ -35,6 +35,8 @@ pub(super) enum Effect {
         backward: bool,
     },
     Reload,
+    /// Another variant of the model's materials.
+    Variant(Option<String>),
     Screenshot,
     /// The state alone.
     SaveState,

@@ -19,7 +19,7 @@ use crate::capture::{CaptureError, CaptureTarget, Wanted, submit};
 use crate::gpu::formats::Precision;
 use crate::gpu::{Gpu, Uploads};
 use crate::gpu_scene::TextureLevels;
-use crate::import::{ImportOptions, Imported};
+use crate::import::{Choice, ImportOptions, Imported};
 use crate::progress::Progress;
 use crate::reference::color::to_srgb8;
 use crate::reference::estimate;
@@ -183,8 +183,9 @@ fn load(args: &RenderArgs, progress: &dyn Progress, watch: &Stopwatch) -> Result
     let state = ViewerState::read(path)?;
     let model = args.subject.given_model().or(state.model.as_deref());
     let model = model.ok_or_else(|| CliError::Usage(format!("{}: it names no model; name one", path.display())))?;
+    let variant = state.variant.clone().map(Choice::Name);
     let (imported, environment) = beside(
-        || watch.time("decode", || load_model(model, &ImportOptions { progress, ..Default::default() })),
+        || watch.time("decode", || load_model(model, &ImportOptions { variant, progress, ..Default::default() })),
         || watch.time("environment decode", || environment_image(&state.environment.source)),
     );
     let Imported { scene, warnings, .. } = imported?;

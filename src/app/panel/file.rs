@@ -44,4 +44,26 @@ pub(super) fn show(ui: &mut egui::Ui, desk: &mut Desk, effects: &mut Vec<Effect>
         }
     });
     effects.extend(recent::menu(ui, desk, Kind::Model).map(Effect::Open));
+    effects.extend(variants(ui, desk));
+}
+
+/// The variants of the model's materials, if it has any. Returns one that is chosen.
+fn variants(ui: &mut egui::Ui, desk: &Desk) -> Option<Effect> {
+    let (names, current) = (&desk.about.variants, &desk.viewer.state.variant);
+    if names.is_empty() {
+        return None;
+    }
+    let mut effect = None;
+    ui.horizontal_wrapped(|ui| {
+        ui.label("variant");
+        for variant in std::iter::once(None).chain(names.iter().cloned().map(Some)) {
+            let label = variant.as_deref().unwrap_or("none");
+            let choice = ui.selectable_label(*current == variant, label);
+            name_place(&choice, format!("variant/{label}"));
+            if choice.clicked() {
+                effect = Some(Effect::Variant(variant));
+            }
+        }
+    });
+    effect
 }

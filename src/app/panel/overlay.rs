@@ -24,7 +24,7 @@ pub(super) fn float<R>(ui: &egui::Ui, name: &str, at: Align2, content: impl FnOn
 pub(super) fn progress(ui: &egui::Ui, desk: &Desk) {
     let Some(loading) = &desk.loading else { return };
     let stage = loading.stage();
-    let name = loading.wanted.model.as_ref().and_then(|path| path.file_name());
+    let name = loading.wanted.model.as_ref().and_then(|model| model.path.file_name());
     let name = name.map_or_else(|| "light".into(), |name| name.to_string_lossy().into_owned());
     // Until there is something to look at, this is all there is.
     let at = if desk.viewer.shown.is_some() { Align2::CENTER_BOTTOM } else { Align2::CENTER_CENTER };

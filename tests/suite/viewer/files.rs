@@ -215,3 +215,31 @@ fn a_state_that_is_dropped_is_opened() {
     }
     screen.assert_renders_again("again");
 }
+
+#[test]
+fn a_variant_is_chosen_in_the_panel_and_kept_in_the_state() {
+    let Some(screen) = Screen::open() else { return };
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::from_pixel(2, 2, image::Rgb([128, 128, 255])).write_to(&mut png, image::ImageFormat::Png).unwrap();
+    screen.write_triangle("chair.gltf", png.get_ref());
+    let text = std::fs::read_to_string(screen.path("chair.gltf")).unwrap();
+    let mut model: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let name = "KHR_materials_variants";
+    model["extensionsUsed"].as_array_mut().unwrap().push(name.into());
+    model["extensions"][name] = serde_json::json!({ "variants": [{ "name": "red" }, { "name": "unused" }] });
+    let red = serde_json::json!({ "pbrMetallicRoughness": { "baseColorFactor": [1, 0, 0, 1], "metallicFactor": 0 } });
+    model["materials"].as_array_mut().unwrap().push(red);
+    model["meshes"][0]["primitives"][0]["extensions"] =
+        serde_json::json!({ name: { "mappings": [{ "material": 1, "variants": [0] }] } });
+    std::fs::write(screen.path("chair.gltf"), model.to_string()).unwrap();
+    let choose = |variant: &str| [click(&format!("variant/{variant}"), 0.5).into(), vec![hold(1)], key("F12").into()];
+    let events = [vec![key("P").to_vec()], choose("red").into(), choose("none").into()].concat().concat();
+    screen.play("chair.gltf", &["--size", "800x700"], &events).end();
+    let variants = ["chair-1", "chair-2"].map(|saved| {
+        screen.assert_renders_again(saved);
+        screen.state(&format!("{saved}.json"))["variant"].clone()
+    });
+    assert_eq!(variants, [serde_json::json!("red"), serde_json::Value::Null]);
+    let [red, none] = ["chair-1.png", "chair-2.png"].map(|saved| std::fs::read(screen.path(saved)).unwrap());
+    assert_ne!(red, none);
+}
