@@ -1,7 +1,7 @@
 //! Which pictures a page has in it.
 
 use super::super::blobs::{self, Role};
-use super::super::report::CaseReport;
+use super::super::report::{CaseReport, Kind};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::Path;
@@ -31,9 +31,10 @@ pub(super) struct Budget<'a> {
     left_bytes: u64,
 }
 
-const fn names(role: Role) -> (&'static str, &'static str) {
+/// For the script and for people.
+const fn names(role: Role, kind: Kind) -> (&'static str, &'static str) {
     match role {
-        Role::Golden => ("golden", "Golden"),
+        Role::Golden => ("golden", if matches!(kind, Kind::Reference) { "Truth" } else { "Golden" }),
         Role::Actual => ("actual", "This run"),
         Role::Difference => ("difference", "Difference, scaled"),
         Role::HeatMap => ("heat", "FLIP error"),
@@ -68,7 +69,8 @@ impl<'a> Budget<'a> {
         self.left_bytes -= bytes;
         let mut pictures = Vec::new();
         for (role, bytes) in files {
-            let ((role_name, label), remark) = (names(role), place(self.folder, case, role).unwrap_or_default());
+            let ((role_name, label), remark) =
+                (names(role, case.kind), place(self.folder, case, role).unwrap_or_default());
             match png_size(&bytes) {
                 Some((width, height)) => {
                     let uri = format!("data:image/png;base64,{}", STANDARD.encode(&bytes));
