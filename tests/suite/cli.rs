@@ -166,16 +166,21 @@ fn stability_is_reported_as_a_document_as_json_and_as_files() {
 
 #[test]
 fn every_used_shader_is_dumped() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("a.png").display().to_string();
-    let dump = folder.path().join("wgsl");
-    let dump_text = dump.display().to_string();
-    let output = specula(&["render", SHOWCASE, "-o", &out, "--size", "16x16", "--dump-wgsl", &dump_text]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    let names: Vec<String> =
-        std::fs::read_dir(dump).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    assert!(names.iter().any(|name| name == "forward+lit+environment+standard.wgsl"), "{names:?}");
-    assert!(names.iter().any(|name| name == "display+neutral.wgsl"), "{names:?}");
+    let [lit, over, display] = ["forward+lit+environment+standard", "over.4", "display+neutral"];
+    let deferred = "deferred.4+lit+environment+standard";
+    for (path, used, unused) in [("forward", [lit, display], over), ("deferred", [deferred, over], lit)] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("a.png").display().to_string();
+        let dump = folder.path().join("wgsl");
+        let dump_text = dump.display().to_string();
+        let arguments = ["render", SHOWCASE, "-o", &out, "--size", "16x16", "--path", path, "--dump-wgsl", &dump_text];
+        let output = specula(&arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let files = std::fs::read_dir(dump).unwrap();
+        let names: Vec<String> = files.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        let is_there = |name: &str| names.contains(&format!("{name}.wgsl"));
+        assert!(used.into_iter().all(is_there) && !is_there(unused), "{path}: {names:?}");
+    }
 }
 
 #[test]
