@@ -5,7 +5,8 @@
 // So they branch on this, which is no uniform as far as a compiler can tell.
 var<private> asked: vec3u;
 
-// A fragment's w is the inverse of its distance, and so above 0.
+// A fragment's w is the inverse of its distance. It may be below 0, where the middle of a pixel lies beside a triangle near the eye that
+// covers another of its samples, but is never so large.
 fn ask(w: f32) {
-    asked = vec3u(frame.channel, frame.channel_index, frame.channel_components) + u32(w < 0.0);
+    asked = vec3u(frame.channel, frame.channel_index, frame.channel_components) + u32(w > 3e38);
 }

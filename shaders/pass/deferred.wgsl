@@ -37,6 +37,14 @@ fn weights(areas: vec3f) -> vec3f {
     return areas * (1.0 / (areas.x + areas.y + areas.z));
 }
 
+// At most about as far beside the triangle as it is large: what goes on beyond is made up, and normals of triangles far smaller
+// than a pixel would turn to anywhere.
+fn near_triangle(weights: vec3f) -> vec3f {
+    let beside = weights - 1.0 / 3.0;
+    let far = max(max(abs(beside.x), abs(beside.y)), abs(beside.z));
+    return 1.0 / 3.0 + beside * min(1.0, 4.0 / (3.0 * far));
+}
+
 // Two instances: pixels that are the draw's alone, and those that it shares.
 @vertex
 fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4f {
@@ -59,7 +67,7 @@ fn shaded(corners: vec3u, place: vec2f) -> vec4f {
     let down = vec2f(0.0, pulled.ndc_step.y);
     let here = areas(p, q, r);
     var at: Barycentrics;
-    at.here = weights(here);
+    at.here = near_triangle(weights(here));
     at.dx = weights(areas(p - right * w.x, q - right * w.y, r - right * w.z)) - at.here;
     at.dy = weights(areas(p - down * w.x, q - down * w.y, r - down * w.z)) - at.here;
     let is_front = (here.x + here.y + here.z) * pulled.front > 0.0;

@@ -1,10 +1,11 @@
 //! Views that are not of one input or one part of the light: the furnace, layers, edges, charts.
 
-use crate::support::{add_light, draw, front_view, gpu, program, sphere_scene, white_environment};
+use crate::support::{add_light, draw, front_view, gpu, import, program, sphere_scene, white_environment};
 use glam::{DMat4, DVec3, UVec2, Vec2, Vec3, Vec4};
 use specula::capture::{CaptureOptions, CaptureTarget, Wanted, submit};
 use specula::gpu::formats::Precision;
 use specula::renderer::{RenderError, Renderer};
+use specula::scene::framing::default_view;
 use specula::scene::{
     AlphaMode, Camera, Channel, Disney, Image, LightKind, Material, Mesh, Node, Pixels, Primitive, Projection, Quality,
     RadianceImage, Sampler, Scene, Texture, TextureRef, TextureSlot, Topology, UvTransform, View,
@@ -247,5 +248,27 @@ fn the_program_draws_them() {
     };
     for view in ["uv-checker", "overdraw", "wireframe"] {
         assert!(distinct(&render(view, &[])) > 3, "{view}");
+    }
+}
+
+#[test]
+fn edges_near_the_eye_show_what_was_asked_for_too() {
+    // From here triangles end beside samples of pixels whose middles lie behind the eye on their planes.
+    let scene = import(std::path::Path::new("assets/spheres.glb"));
+    let target = scene.bounds().center();
+    let projection = default_view(&scene, UVec2::splat(48)).camera.projection;
+    let camera = Camera::look_at(target + DVec3::Z * 0.6, target, DVec3::Y, projection, 1e-3, 100.0);
+    for side in [48, 96, 128] {
+        let view = View {
+            camera: camera.clone(),
+            size_px: UVec2::splat(side),
+            channel: Some(Channel::by_name("nan").unwrap()),
+            ..front_view(side)
+        };
+        let options = CaptureOptions { samples: 4, precision: Precision::Half };
+        let image = drawn(&scene, &view, options);
+        assert!(image.texels.iter().any(|texel| texel.w > 0.0 && texel.w < 1.0), "no edges at {side}");
+        let faults = image.texels.iter().filter(|texel| texel.truncate() != Vec3::ZERO).count();
+        assert_eq!(faults, 0, "at {side}");
     }
 }
