@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// How far a clip coordinate may be off, of the sum of its terms' sizes: four products and three sums make at most 4
 /// steps of f32, here as on the GPU, and the rest is room.
-pub(super) const ROUNDING: f32 = 16.0 * f32::EPSILON;
+const ROUNDING: f32 = 16.0 * f32::EPSILON;
 
 /// Pixels by which the picture is taken to be larger on each side: points and lines are wider than their vertices, and
 /// rasterisers round places in the picture.
@@ -255,7 +255,7 @@ impl Extents<'_> {
     /// With room for rounding.
     fn of(&self, row: usize) -> Extent {
         let row = self.clip_from_origin.row(row);
-        let half = row.truncate().abs().dot(self.half) + f64::from(ROUNDING) * row.abs().dot(self.reach);
+        let half = spread(row, self.half, self.reach);
         Extent { middle: row.truncate().dot(self.center) + row.w, half }
     }
 
@@ -264,6 +264,12 @@ impl Extents<'_> {
         let (least, most) = (middle - half, middle + half);
         [(least / self.near_w).min(least / self.far_w), (most / self.near_w).max(most / self.far_w)]
     }
+}
+
+/// How far from its middle a clip coordinate, a `row`, may be where a point may be `half` from the middle and its coordinates
+/// are at most as large as `reach`: rounding included.
+pub(super) fn spread(row: DVec4, half: DVec3, reach: DVec4) -> f64 {
+    row.truncate().abs().dot(half) + f64::from(ROUNDING) * row.abs().dot(reach)
 }
 
 /// [`Sides::exclude`] of many boxes: plain loops over arrays, which the compiler turns into SIMD.

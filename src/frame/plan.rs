@@ -256,7 +256,8 @@ impl Planner {
             plan.drawables.outside += 1;
             return;
         }
-        if frustum.is_some_and(|frustum| self.occlusion.hides(frustum, drawable.bounds)) {
+        // Of a single placement the same box is looked at below.
+        if count > 1 && frustum.is_some_and(|frustum| self.occlusion.hides(frustum, drawable.bounds)) {
             plan.placements.hidden += count;
             plan.drawables.hidden += 1;
             return;

@@ -1,6 +1,6 @@
 //! What is not drawn would not have been seen, and what has not changed is not drawn again.
 
-use crate::support::{add_light, front_view, gpu, import, sphere_scene, submission_number};
+use crate::support::{Numbers, add_light, front_view, gpu, import, sphere_scene, submission_number};
 use glam::{DMat4, DQuat, DVec3, UVec2, Vec3, Vec4};
 use specula::bake::environment::{BakeOptions, bake};
 use specula::capture::{CaptureOptions, CaptureTarget, CapturedFrame, Wanted, redraw, submit};
@@ -15,20 +15,6 @@ use specula::scene::{
     Topology, View, shapes,
 };
 use std::path::Path;
-
-/// Numbers in [-1, 1) that look random and are always the same.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
 
 /// A sphere as triangles, and its vertices as lines and points, of different materials.
 fn meshes() -> (Vec<Mesh>, Vec<Material>) {
@@ -61,7 +47,7 @@ fn crowd() -> Scene {
     let mut numbers = Numbers(7);
     let mut scene = Scene { materials, ..Default::default() };
     for index in 0..1500 {
-        let size = 10.0_f64.powf(1.5 * numbers.next() - 1.5);
+        let size = 10.0_f64.powf(1.5 * numbers.between(-1.0, 1.0) - 1.5);
         let stretch = match index % 10 {
             0 => DVec3::new(-1.0, 1.0, 1.0),
             1 => DVec3::new(1.0, 0.0, 1.0),
@@ -69,9 +55,9 @@ fn crowd() -> Scene {
             3 if index % 50 == 3 => DVec3::ZERO,
             _ => DVec3::ONE,
         };
-        let axis = numbers.vector().normalize_or(DVec3::X);
-        let rotation = DQuat::from_axis_angle(axis, numbers.next() * 3.0);
-        let place = numbers.vector() * DVec3::new(9.0, 6.0, 14.0);
+        let axis = numbers.vector(-1.0, 1.0).normalize_or(DVec3::X);
+        let rotation = DQuat::from_axis_angle(axis, numbers.between(-1.0, 1.0) * 3.0);
+        let place = numbers.vector(-1.0, 1.0) * DVec3::new(9.0, 6.0, 14.0);
         let parent_from_node = DMat4::from_scale_rotation_translation(size * stretch, rotation, place);
         scene.nodes.push(Node { parent_from_node, mesh: Some(index % meshes.len()), ..Default::default() });
     }

@@ -1,6 +1,6 @@
 //! What is hidden behind other things is not drawn, and the picture has the same bits.
 
-use crate::support::{add_light, front_view, gpu};
+use crate::support::{Numbers, add_light, front_view, gpu};
 use glam::{DMat4, DQuat, DVec3, UVec2, Vec2, Vec3, Vec4};
 use specula::capture::{CaptureOptions, CaptureTarget, Wanted, submit};
 use specula::frame::Culling;
@@ -12,24 +12,6 @@ use specula::scene::{
     AlphaMode, Background, Camera, LightKind, Material, Mesh, Node, Primitive, Projection, Scene, Topology, View,
     shapes,
 };
-
-/// Numbers in [0, 1) that look random and are always the same.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, least: f64, most: f64) -> f64 {
-        least + (most - least) * self.next()
-    }
-
-    fn vector(&mut self, least: f64, most: f64) -> DVec3 {
-        DVec3::new(self.between(least, most), self.between(least, most), self.between(least, most))
-    }
-}
 
 fn flat(positions: Vec<Vec3>, indices: Vec<u32>, material: usize) -> Primitive {
     let count = positions.len();

@@ -123,6 +123,24 @@ pub(crate) fn samples() -> Option<PathBuf> {
     None
 }
 
+/// Numbers in [0, 1) that look random and are always the same.
+pub(crate) struct Numbers(pub(crate) u64);
+
+impl Numbers {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub(crate) fn between(&mut self, least: f64, most: f64) -> f64 {
+        least + (most - least) * self.next()
+    }
+
+    pub(crate) fn vector(&mut self, least: f64, most: f64) -> DVec3 {
+        DVec3::new(self.between(least, most), self.between(least, most), self.between(least, most))
+    }
+}
+
 /// Imports a model; warnings are fine.
 pub(crate) fn import(path: &Path) -> Scene {
     model_from_path(path, &Default::default()).unwrap().scene

@@ -9,7 +9,7 @@ mod occluders;
 mod raster;
 
 use super::boxes::rounding;
-use super::cull::{BORDER_PX, Frustum, ROUNDING};
+use super::cull::{BORDER_PX, Frustum, spread};
 use super::drawables::Drawables;
 use cells::Cells;
 use glam::{DMat4, DVec4, Vec3};
@@ -123,10 +123,7 @@ fn placed<'a>(
     let reach = (center.abs() + half).as_dvec3().extend(1.0);
     let moved = rounding(&drawable.object, &origin_from_object);
     let clip = frustum.clip_from_origin;
-    let error = DVec4::from_array([0, 1, 2, 3].map(|row| {
-        let row = clip.row(row).abs();
-        row.truncate().dot(moved) + f64::from(ROUNDING) * row.dot(reach)
-    }));
+    let error = DVec4::from_array([0, 1, 2, 3].map(|row| spread(clip.row(row), moved, reach)));
     let handedness = if drawable.mirrored { -1.0 } else { 1.0 };
     let clip_from_object = clip * origin_from_object;
     Some(Placed { occluder, clip_from_object, size_px: frustum.size_px, error, handedness })
